@@ -1,0 +1,39 @@
+"""Every error a caller can act on: what was asked, what was found, what is allowed."""
+
+from __future__ import annotations
+
+
+class IcageError(Exception):
+    """Base of all errors that icage raises on purpose."""
+
+
+class InputError(IcageError):
+    """Something a user gave is wrong; the command line answers with exit code 2."""
+
+
+class OutlineError(InputError):
+    """The outline is not one simple polygon with an area."""
+
+
+class HandError(InputError):
+    """The three fingers do not form a counterclockwise triangle."""
+
+
+class GraspError(InputError):
+    """The contacts cannot be a grasp of this outline with this finger radius."""
+
+
+class CaseError(InputError):
+    """A case file is not what the case format allows."""
+
+
+class PlacementError(InputError):
+    """A placement (x, y, theta, sigma) is not usable."""
+
+
+class FormatError(InputError):
+    """A drawing cannot be read."""
+
+
+class GeometryError(IcageError):
+    """A computation broke one of its own invariants: our fault, never the user's."""

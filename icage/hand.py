@@ -1,0 +1,152 @@
+"""The hand: three fingers on a triangle of fixed shape and variable size. [Bunis2018, Sec. II]
+
+Complex numbers make it linear: finger k stands at ``d + w z_k`` with d the position of finger 1,
+``w = sigma e^{i theta}`` and the unit hand ``z = (0, 1, z_3)``. Fingers are 1..3 in prose and
+0..2 in arrays.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from icage.arrays import ComplexArray, FloatArray, read_only
+from icage.errors import HandError, PlacementError
+
+_FLATTEST = 1e-6
+"""[1] Smallest height of the unit triangle over its longest side that we accept as a triangle."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandShape:
+    """The shape of the triangle of fingers, given by finger 3 of the unit hand.
+
+    Parameters
+    ----------
+    z_3:
+        Finger 3 in the frame whose origin is finger 1 and whose unit x axis ends at finger 2.
+
+    Raises
+    ------
+    HandError:
+        The fingers are clockwise, collinear, coincident or not finite.
+
+    Examples
+    --------
+    >>> HandShape.from_angles_deg(60.0, 120.0).z.round(6).tolist()
+    [0j, (1+0j), (0.5+0.866025j)]
+    """
+
+    z_3: complex
+    z: ComplexArray = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        z_3 = complex(self.z_3)
+        if not cmath.isfinite(z_3):
+            raise HandError(f"the hand's third finger is {z_3}; finite coordinates are needed")
+        longest = max(1.0, abs(z_3), abs(z_3 - 1.0))
+        if z_3.imag < 0.0 and -z_3.imag > _FLATTEST * longest:
+            raise HandError(
+                "the fingers 1, 2, 3 are clockwise; give them counterclockwise (swap two of them)"
+            )
+        if z_3.imag <= _FLATTEST * longest:
+            raise HandError(
+                "the three fingers are collinear or coincident "
+                f"(height over longest side {z_3.imag / longest:.3g}; above {_FLATTEST:g} is needed)"
+            )
+        object.__setattr__(self, "z_3", z_3)
+        z = np.array([0.0, 1.0, z_3], dtype=np.complex128)
+        object.__setattr__(self, "z", read_only(z))
+
+    @classmethod
+    def from_contacts(cls, contacts: FloatArray) -> HandShape:
+        """Shape of the triangle on three points, (3, 2), fingers 1, 2, 3 counterclockwise."""
+        points = np.asarray(contacts, dtype=np.float64)
+        if points.shape != (3, 2) or not np.isfinite(points).all():
+            raise HandError(f"three finite points (x, y) are needed, found shape {points.shape}")
+        side_12 = complex(*(points[1] - points[0]))
+        side_13 = complex(*(points[2] - points[0]))
+        side_23 = complex(*(points[2] - points[1]))
+        longest = max(abs(side_12), abs(side_13), abs(side_23))
+        if min(abs(side_12), abs(side_13), abs(side_23)) <= 1e-9 * longest or longest == 0.0:
+            raise HandError("two of the three fingers coincide")
+        return cls(side_13 / side_12)
+
+    @classmethod
+    def from_angles(cls, phi_1: float, phi_2: float) -> HandShape:
+        """Shape from the angles at fingers 1 and 2, [rad]. [Bunis2018, Def. 1, Eq. (1)]
+
+        The paper asks for 0 < phi_1, phi_2 < pi; Eq. (1) also needs phi_3 = phi_2 - phi_1 > 0.
+        """
+        if not (0.0 < phi_1 < phi_2 < math.pi):
+            raise HandError(
+                f"phi = ({math.degrees(phi_1):.6g}, {math.degrees(phi_2):.6g}) degrees; "
+                "0 < phi_1 < phi_2 < 180 is needed"
+            )
+        return cls(cmath.rect(math.sin(phi_2) / math.sin(phi_2 - phi_1), phi_1))
+
+    @classmethod
+    def from_angles_deg(cls, phi_1: float, phi_2: float) -> HandShape:
+        """Shape from the angles at fingers 1 and 2, [deg]."""
+        return cls.from_angles(math.radians(phi_1), math.radians(phi_2))
+
+    @property
+    def phi(self) -> tuple[float, float]:
+        """(phi_1, phi_2), [rad]: directions from fingers 1 and 2 to finger 3. [Bunis2018, Def. 1]"""
+        return cmath.phase(self.z_3), cmath.phase(self.z_3 - 1.0)
+
+    @property
+    def phi_deg(self) -> tuple[float, float]:
+        """(phi_1, phi_2), [deg]."""
+        phi_1, phi_2 = self.phi
+        return math.degrees(phi_1), math.degrees(phi_2)
+
+    @property
+    def unit_fingers(self) -> FloatArray:
+        """Fingers at sigma = 1 in the palm frame, (3, 2)."""
+        return np.column_stack([self.z.real, self.z.imag])
+
+    def relabelled(self, first: int) -> HandShape:
+        """The same hand with finger ``first`` (0, 1, 2) called finger 1, still counterclockwise."""
+        a, b, c = (self.z[(first + k) % 3] for k in range(3))
+        return HandShape(complex((c - a) / (b - a)))
+
+    def fingers(self, placements: FloatArray) -> FloatArray:
+        """Finger positions (..., 3, 2) of placements (..., 4) = (x, y, theta, sigma)."""
+        rows = np.asarray(placements, dtype=np.float64)
+        d = rows[..., 0] + 1j * rows[..., 1]
+        w = rows[..., 3] * np.exp(1j * rows[..., 2])
+        f = d[..., None] + w[..., None] * self.z
+        return np.stack([f.real, f.imag], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """Where the hand stands: finger 1 at (x, y), finger 2 at distance sigma in direction theta.
+
+    Lengths in the object's unit, theta in [rad], all in the object's frame B.
+    """
+
+    x: float
+    y: float
+    theta: float
+    sigma: float
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(v) for v in (self.x, self.y, self.theta, self.sigma)):
+            raise PlacementError(f"placement {self.as_array().tolist()}: numbers must be finite")
+        if self.sigma < 0.0:
+            raise PlacementError(f"placement with sigma = {self.sigma}; sigma >= 0 is needed")
+
+    @classmethod
+    def from_contacts(cls, contacts: FloatArray) -> Placement:
+        """The placement whose fingers 1 and 2 are the first two of the points (3, 2)."""
+        side = complex(*(np.asarray(contacts[1]) - np.asarray(contacts[0])))
+        return cls(float(contacts[0][0]), float(contacts[0][1]), cmath.phase(side), abs(side))
+
+    def as_array(self) -> FloatArray:
+        """(4,) = x, y, theta, sigma."""
+        return np.array([self.x, self.y, self.theta, self.sigma])

@@ -1,0 +1,125 @@
+"""The object: one simple polygon, counterclockwise. [Bunis2018, Sec. IV-A]"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial.distance import pdist
+from shapely.validation import explain_validity
+
+from icage.arrays import FloatArray, read_only
+from icage.errors import OutlineError
+
+MAX_VERTICES = 2000
+"""Largest outline accepted: the planner's work grows about like n^2.4, minutes beyond this."""
+
+LARGEST_COORDINATE = 1e12
+"""Beyond this, coordinates of an object of ordinary size have lost half of their digits."""
+
+_THINNEST = 1e-12
+"""[diameter^2] Area below which a polygon counts as having none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A simple polygon with an area, its vertices counterclockwise.
+
+    Repeated vertices are dropped and a clockwise ring is turned round; apart from that the
+    vertices are used bit for bit as given.
+
+    Parameters
+    ----------
+    vertices:
+        (n, 2), open ring (a repeated last vertex is dropped), either orientation.
+
+    Raises
+    ------
+    OutlineError:
+        Not finite, fewer than three different vertices, self-crossing (says where), no area,
+        more than ``MAX_VERTICES`` vertices or coordinates beyond ``LARGEST_COORDINATE``.
+
+    Examples
+    --------
+    >>> square = Outline([[0, 0], [0, 1], [1, 1], [1, 0]])
+    >>> square.vertices.tolist()
+    [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]]
+    >>> round(square.diameter, 6)
+    1.414214
+    """
+
+    vertices: FloatArray
+    diameter: float = field(init=False)
+    polygon: shapely.Polygon = field(init=False, repr=False, compare=False)
+
+    def __init__(self, vertices: ArrayLike) -> None:
+        points = _as_points(vertices)
+        repeated = (points == np.roll(points, 1, axis=0)).all(axis=1)
+        points = points[~repeated] if not repeated.all() else points[:1]
+        if len(points) < 3:
+            raise OutlineError(
+                f"the outline has {len(points)} different vertices; at least 3 are needed"
+            )
+        diameter = _diameter(points)
+        polygon = shapely.Polygon(points)
+        if not polygon.is_valid:
+            raise OutlineError(f"the outline is not simple: {explain_validity(polygon)}")
+        if not polygon.area > _THINNEST * diameter**2:
+            raise OutlineError("the outline has no area")
+        if not polygon.exterior.is_ccw:
+            points = points[::-1].copy()
+            polygon = shapely.Polygon(points)
+        object.__setattr__(self, "vertices", read_only(points))
+        object.__setattr__(self, "diameter", diameter)
+        object.__setattr__(self, "polygon", polygon)
+
+    def __len__(self) -> int:
+        return len(self.vertices)
+
+    @property
+    def area(self) -> float:
+        """[unit^2]."""
+        return float(self.polygon.area)
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Area centroid, (2,)."""
+        centre = self.polygon.centroid
+        return np.array([centre.x, centre.y])
+
+
+def _as_points(vertices: ArrayLike) -> FloatArray:
+    try:
+        points = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise OutlineError("outline vertices must be pairs of numbers [x, y]") from error
+    if points.ndim != 2 or points.shape[1:] != (2,):
+        raise OutlineError(
+            f"outline vertices must be pairs of numbers [x, y]; found an array {points.shape}"
+        )
+    if len(points) > MAX_VERTICES:
+        raise OutlineError(f"the outline has {len(points)} vertices; at most {MAX_VERTICES}")
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise OutlineError(f"outline vertex {bad[0]} is {points[bad[0]].tolist()}; must be finite")
+    far = np.flatnonzero((np.abs(points) > LARGEST_COORDINATE).any(axis=1))
+    if len(far):
+        raise OutlineError(
+            f"outline vertex {far[0]} is {points[far[0]].tolist()}; "
+            f"coordinates up to {LARGEST_COORDINATE:g} are allowed"
+        )
+    return points
+
+
+def _diameter(points: FloatArray) -> float:
+    """Largest distance between two vertices."""
+    if len(points) < 60:
+        return float(pdist(points).max())
+    try:
+        hull = points[ConvexHull(points).vertices]
+    except QhullError:
+        hull = points
+    return float(pdist(hull).max())

@@ -1,0 +1,35 @@
+"""Every epsilon of the planner, with its unit and the reason for it.
+
+*Diameter* is the largest distance between two vertices of the outline. Tolerances marked
+[diameter] are multiples of it, so that nothing depends on the unit of the drawing.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+DEPTH_CUT: Final = 1e-10
+"""[diameter] A local minimum of sigma counts if it is deeper than this. [contract; theory.md 1]"""
+
+MERGE_VERTEX: Final = 1e-12
+"""[diameter] Vertices this close to the chord of their neighbours are dropped: a thousand times
+below every published figure, a thousand times above the rounding of a rotated input."""
+
+CONTACT_OFF: Final = 1e-6
+"""[diameter] A target contact may lie this far off the (offset) outline. [contract]"""
+
+TARGET_SHIFT: Final = 1e-5
+"""[diameter] The nearest local minimum is the target if the fingers move less. [contract]"""
+
+TARGET_TURN: Final = 1e-3
+"""[rad] ... and the hand turns less. [contract]"""
+
+NOT_A_CAGE: Final = 1e-9
+"""[1] sigma_max / sigma_0 - 1 below this is not a cage. [contract]"""
+
+COLLISION: Final = 1e-9
+"""[diameter] A finger deeper than this inside the object collides. [contract]"""
+
+LEVEL: Final = 5e-10
+"""[1] Two levels of sigma this close (relative) are one: half of what the contract allows a query
+to leave open, so that a grasp queried at its own sigma lies in its own basin."""
