@@ -1,0 +1,1 @@
+"""The commands: what a user runs. Nothing is imported here, so that ``--help`` stays quick."""

@@ -1,0 +1,80 @@
+"""Make the project's own environment with nothing but Python and pip.
+
+Some systems refuse pip outside a virtual environment and some ship ``venv`` without its copy of
+pip; both are met here. Standard library only: this runs before anything is installed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import subprocess
+import sys
+import tomllib
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+"""The checkout: where pyproject.toml and constraints.txt are."""
+
+_STAMP = "icage-installed"
+
+
+def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
+    """Python of the environment ``ROOT/name``, made or brought up to date first.
+
+    Parameters
+    ----------
+    name:
+        Folder of the environment, inside the checkout.
+    extras:
+        Extras of the project to install, e.g. ``"[dev]"``.
+    lowest:
+        Install the lower bounds pyproject.toml declares instead of the pinned versions.
+    """
+    folder = ROOT / name
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    constraints = folder / "lower-bounds.txt" if lowest else ROOT / "constraints.txt"
+    wanted = lower_bounds() if lowest else constraints.read_text(encoding="utf-8")
+    state = "\n".join([extras, wanted, (ROOT / "pyproject.toml").read_text(encoding="utf-8")])
+    digest = hashlib.sha256(state.encode()).hexdigest()
+    stamp = folder / _STAMP
+    if python.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == digest:
+        return python
+    print(f"icage: preparing the environment {name}", file=sys.stderr, flush=True)
+    if not python.exists():
+        _create(folder)
+    stamp.unlink(missing_ok=True)
+    if lowest:
+        constraints.write_text(wanted, encoding="utf-8")
+    target = ["-c", str(constraints), "-e", f"{ROOT}{extras}"]
+    subprocess.run([*_pip(python), "install", "--quiet", *target], check=True, cwd=ROOT)
+    stamp.write_text(digest, encoding="utf-8")
+    return python
+
+
+def lower_bounds() -> str:
+    """The lower bound of every direct dependency and test tool, as a constraints file."""
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        project = tomllib.load(file)["project"]
+    needed = [*project["dependencies"], *project["optional-dependencies"]["test"]]
+    bounds = [re.fullmatch(r"([\w.-]+)>=([\d.]+)(,.*)?", entry) for entry in needed]
+    return "".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound)
+
+
+def _create(folder: Path) -> None:
+    """A virtual environment; without pip in it where this Python has no copy to give."""
+    try:
+        venv.create(folder, with_pip=True)
+    except subprocess.CalledProcessError:
+        venv.create(folder, with_pip=False)
+
+
+def _pip(python: Path) -> list[str]:
+    """The environment's own pip or, where it has none, this Python's pip aimed at it."""
+    own = [str(python), "-m", "pip"]
+    found = subprocess.run([*own, "--version"], capture_output=True, check=False)
+    if found.returncode == 0:
+        return own
+    return [sys.executable, "-m", "pip", "--python", str(python)]

@@ -1,0 +1,1 @@
+"""The physics: everything that needs MuJoCo, nothing that plots."""

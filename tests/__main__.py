@@ -1,0 +1,82 @@
+"""``python3 -m tests``: everything CI checks, from a bare checkout.
+
+Makes ``.venv`` (only Python and pip are needed), then format, lint, types, import contracts and
+last pytest with the doctests, whose closing line is the last line printed. The exit code is
+non-zero if any of them failed.
+
+    python3 -m tests                  all of it
+    python3 -m tests --fast           without the tests marked slow
+    python3 -m tests --lowest --fast  only pytest, with the declared lower bounds installed
+    python3 -m tests --here           in the environment of this Python
+    python3 -m tests --fast tests/cli any further argument goes to pytest
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from experiments.environment import ROOT, environment
+
+CHECKS = {
+    "format": ["ruff", "format", "--check", "."],
+    "lint": ["ruff", "check", "."],
+    "types": ["pyright"],
+    "imports": ["lint-imports"],
+}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python3 -m tests", description="run all checks")
+    parser.add_argument("--fast", action="store_true", help="leave out the tests marked slow")
+    parser.add_argument("--lowest", action="store_true", help="pytest at the lower bounds only")
+    parser.add_argument("--here", action="store_true", help="use this Python's environment")
+    options, further = parser.parse_known_args()
+    if options.here:
+        python = Path(sys.executable)
+    elif options.lowest:
+        python = environment(".venv-lowest", "[test]", lowest=True)
+    else:
+        python = environment(".venv", "[dev]")
+    failed = [] if options.lowest else [name for name in CHECKS if not check(name, python)]
+    if failed:
+        print(f"== failed so far: {', '.join(failed)}", flush=True)
+    fast = ["-m", "not slow"] if options.fast else []
+    command = [str(python), "-m", "pytest", "-q", "-n", "2", "--dist", "worksteal"]
+    tested = subprocess.run([*command, *fast, *further], check=False, cwd=ROOT)
+    return tested.returncode or int(bool(failed))
+
+
+def check(name: str, python: Path) -> bool:
+    """Run one tool of the environment; its output only where it fails."""
+    tool, *arguments = CHECKS[name]
+    if tool == "pyright":
+        arguments += ["--pythonpath", str(python)]
+    started = time.perf_counter()
+    path = os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])
+    done = subprocess.run(
+        [str(python.parent / tool), *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+        env={**os.environ, "PATH": path},
+    )
+    result = "ok" if done.returncode == 0 else "FAILED"
+    print(f"== {name}: {result} ({time.perf_counter() - started:.0f} s)", flush=True)
+    if done.returncode:
+        print(done.stdout + done.stderr, flush=True)
+    return done.returncode == 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"the environment could not be made (pip exit {error.returncode})")
+    except KeyboardInterrupt:
+        sys.exit(130)
