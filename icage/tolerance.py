@@ -33,3 +33,14 @@ COLLISION: Final = 1e-9
 LEVEL: Final = 5e-10
 """[1] Two levels of sigma this close (relative) are one: half of what the contract allows a query
 to leave open, so that a grasp queried at its own sigma lies in its own basin."""
+
+PASS_ERROR: Final = 1e-12
+"""[diameter] A pass value that doubles may miss by more than this is computed in double-double;
+a hundred times below DEPTH_CUT, so that rounding cannot make or hide a minimum."""
+
+SAME_POINT: Final = 1e-10
+"""[diameter] A finger this close to a piece is taken to be in it: above the rounding of a
+configuration, far below every feature that survives MERGE_VERTEX in practice."""
+
+FREE_FINGER: Final = 1e-7
+"""[diameter] A finger further than this from the outline touches nothing."""

@@ -1,0 +1,181 @@
+"""The point of least norm in an intersection of half planes g . w >= c in the plane.
+
+Incremental: a row that the present point violates must be tight at the new one, which leaves a
+problem on a line over the rows seen so far. [Seidel1991] The fast version works in doubles with an
+error bound on every row and says so when rounding could matter; the careful version is the same
+in double-double arithmetic and always answers.
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from icage.kernels import double_double as dd
+from icage.kernels.compiled import compiled
+
+INFEASIBLE = 0
+FOUND = 1
+UNSURE = -1
+
+_PARALLEL = 1e-13
+_THIN = 1e-3  # [rad] a wedge of near-active rows thinner than this is left to the careful version
+
+
+@compiled
+def min_norm(rows, n, worst):
+    """Least norm over ``rows[:n]`` = (g_x, g_y, c, error), |g| = 1, in doubles.
+
+    Returns (status, w_x, w_y). ``UNSURE`` when the value may be off by more than ``worst``
+    (same unit as c) or when feasibility hangs on rounding.
+    """
+    wx = 0.0
+    wy = 0.0
+    first = -1
+    second = -1
+    for r in range(n):
+        gx = rows[r, 0]
+        gy = rows[r, 1]
+        c = rows[r, 2]
+        if gx * wx + gy * wy >= c:
+            continue
+        bx = c * gx
+        by = c * gy
+        lo = -np.inf
+        hi = np.inf
+        at_lo = -1
+        at_hi = -1
+        for q in range(r):
+            a = rows[q, 1] * gx - rows[q, 0] * gy
+            b = rows[q, 2] - (rows[q, 0] * bx + rows[q, 1] * by)
+            if a > _PARALLEL:
+                s = b / a
+                if s > lo:
+                    lo = s
+                    at_lo = q
+            elif a < -_PARALLEL:
+                s = b / a
+                if s < hi:
+                    hi = s
+                    at_hi = q
+            elif b > 0.0:
+                if b > 4.0 * (rows[q, 3] + rows[r, 3]) + 1e-12 * abs(c):
+                    return INFEASIBLE, 0.0, 0.0
+                return UNSURE, 0.0, 0.0
+        if lo > hi:
+            a_lo = abs(rows[at_lo, 1] * gx - rows[at_lo, 0] * gy)
+            a_hi = abs(rows[at_hi, 1] * gx - rows[at_hi, 0] * gy)
+            doubt = (rows[at_lo, 3] + rows[r, 3]) / a_lo + (rows[at_hi, 3] + rows[r, 3]) / a_hi
+            if lo - hi > 4.0 * doubt:
+                return INFEASIBLE, 0.0, 0.0
+            return UNSURE, 0.0, 0.0
+        s = 0.0
+        first = r
+        second = -1
+        if lo > 0.0:
+            s = lo
+            second = at_lo
+        elif hi < 0.0:
+            s = hi
+            second = at_hi
+        wx = bx - s * gy
+        wy = by + s * gx
+    if first < 0:
+        return FOUND, 0.0, 0.0
+    return _certified(rows, n, worst, wx, wy, first, second), wx, wy
+
+
+@compiled
+def _certified(rows, n, worst, wx, wy, first, second):
+    """Is |w| within ``worst`` of the truth? Weak duality below, a fat wedge of room above."""
+    norm = math.hypot(wx, wy)
+    if norm == 0.0:
+        return FOUND
+    ux = wx / norm
+    uy = wy / norm
+    shift = rows[first, 3]
+    below = rows[first, 3]
+    if second >= 0:
+        det = rows[first, 0] * rows[second, 1] - rows[first, 1] * rows[second, 0]
+        if abs(det) < _PARALLEL:
+            return UNSURE
+        mult_1 = (ux * rows[second, 1] - uy * rows[second, 0]) / det
+        mult_2 = (rows[first, 0] * uy - rows[first, 1] * ux) / det
+        below = abs(mult_1) * rows[first, 3] + abs(mult_2) * rows[second, 3]
+        shift = (rows[first, 3] + rows[second, 3]) / abs(det)
+    if below > worst or shift > 1e3 * worst:
+        return UNSURE
+    widest = 0.0
+    narrowest = 0.0
+    largest = 0.0
+    for r in range(n):
+        gap = rows[r, 0] * wx + rows[r, 1] * wy - rows[r, 2]
+        if gap < 4.0 * (rows[r, 3] + shift):
+            if gap < -4.0 * (rows[r, 3] + shift):
+                return UNSURE
+            turn = math.atan2(ux * rows[r, 1] - uy * rows[r, 0], ux * rows[r, 0] + uy * rows[r, 1])
+            widest = max(widest, turn)
+            narrowest = min(narrowest, turn)
+            largest = max(largest, rows[r, 3])
+    room = math.pi - (widest - narrowest)
+    if room < _THIN or largest / math.sin(min(0.5 * room, 1.5)) > worst:
+        return UNSURE
+    return FOUND
+
+
+@compiled
+def min_norm_careful(rows, n, slack):
+    """The same in double-double: ``rows[:n]`` = (g_x, g_y, c), each hi, lo; |g| about 1.
+
+    Touching counts as free: a row is satisfied when it is violated by no more than ``slack``.
+    Returns (status, w_x, w_y) with status ``FOUND`` or ``INFEASIBLE``.
+    """
+    wxh = 0.0
+    wxl = 0.0
+    wyh = 0.0
+    wyl = 0.0
+    for r in range(n):
+        gxh, gxl, gyh, gyl = rows[r, 0], rows[r, 1], rows[r, 2], rows[r, 3]
+        ch, cl = rows[r, 4], rows[r, 5]
+        vh, vl = dd.dot(gxh, gxl, gyh, gyl, wxh, wxl, wyh, wyl)
+        vh, vl = dd.sub(vh, vl, ch, cl)
+        if vh >= -slack:
+            continue
+        # foot of the origin on the line g . w = c
+        nh, nl = dd.dot(gxh, gxl, gyh, gyl, gxh, gxl, gyh, gyl)
+        kh, kl = dd.div(ch, cl, nh, nl)
+        bxh, bxl = dd.mul(kh, kl, gxh, gxl)
+        byh, byl = dd.mul(kh, kl, gyh, gyl)
+        loh, lol = -np.inf, 0.0
+        hih, hil = np.inf, 0.0
+        for q in range(r):
+            qxh, qxl, qyh, qyl = rows[q, 0], rows[q, 1], rows[q, 2], rows[q, 3]
+            ah, al = dd.dot(qxh, qxl, qyh, qyl, -gyh, -gyl, gxh, gxl)
+            th, tl = dd.dot(qxh, qxl, qyh, qyl, bxh, bxl, byh, byl)
+            th, tl = dd.sub(rows[q, 4], rows[q, 5], th, tl)
+            if abs(ah) < 1e-26:
+                if th > slack:
+                    return INFEASIBLE, 0.0, 0.0
+                continue
+            sh, sl = dd.div(th, tl, ah, al)
+            if ah > 0.0:
+                if sh > loh or (sh == loh and sl > lol):
+                    loh, lol = sh, sl
+            elif sh < hih or (sh == hih and sl < hil):
+                hih, hil = sh, sl
+        if np.isfinite(loh) and np.isfinite(hih):
+            vh, vl = dd.sub(loh, lol, hih, hil)
+            if vh > slack:
+                return INFEASIBLE, 0.0, 0.0
+        sh, sl = 0.0, 0.0
+        if loh > 0.0:
+            sh, sl = loh, lol
+        elif hih < 0.0:
+            sh, sl = hih, hil
+        th, tl = dd.mul(sh, sl, gyh, gyl)
+        wxh, wxl = dd.sub(bxh, bxl, th, tl)
+        th, tl = dd.mul(sh, sl, gxh, gxl)
+        wyh, wyl = dd.add(byh, byl, th, tl)
+    return FOUND, wxh + wxl, wyh + wyl

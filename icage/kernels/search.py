@@ -1,0 +1,252 @@
+"""Best-first search over cells, keyed by the pass value: the sublevel structure around a cell.
+
+A cell "finger 1 in piece a, finger 2 in b, finger 3 in c" is one convex set of R^4 on which
+sigma = |w| is convex, so its sublevel sets are connected; two cells that differ by one step of one
+finger across a shared edge join exactly at the least sigma on that facet. Taking passes in
+ascending order (Prim) visits everything that is reachable below a level before anything above it.
+Our own; theory in docs/decisions/0001-cells.md.
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import numpy as np
+
+from icage.kernels.compiled import compiled
+from icage.kernels.facet import MAX_BASE, MAX_ROWS, pass_value
+from icage.kernels.storage import (
+    grown_floats,
+    grown_ints,
+    hash_slot,
+    heap_pop,
+    heap_push,
+    rehashed,
+)
+
+ESCAPED = 1
+CLOSED_IN = 0
+GAVE_UP = -1
+REACHED = 2
+
+TIE = 1e-12
+"""[diameter] Passes this close to the running maximum are looked at as if they were it: pass
+values are good to about this, and a pass through a vertex has several facets of one value."""
+
+
+@compiled
+def birth(pieces, z, a, b, c, cap, worst, base, rows, tally):
+    """Least sigma of a cell and where: (sigma, w_x, w_y, finger, slot).
+
+    At a positive minimum at least two fingers are held by an edge of their piece, so finger 1 or
+    finger 2 is: the minimum over the cell is the least pass value over the edges of these two.
+    """
+    if a == b and b == c:
+        return 0.0, 0.0, 0.0, -1, -1
+    best = cap
+    wx = 0.0
+    wy = 0.0
+    found = False
+    at_finger = -1
+    at_slot = -1
+    for i in range(2):
+        piece = a if i == 0 else b
+        j = i + 1
+        piece_j = b if i == 0 else c
+        k = (i + 2) % 3
+        piece_k = c if i == 0 else a
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            t = s + 1 if s + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
+            value, vx, vy = pass_value(
+                pieces,
+                z,
+                i,
+                pieces.slot_vertex[s],
+                pieces.slot_vertex[t],
+                j,
+                piece_j,
+                k,
+                piece_k,
+                best,
+                worst,
+                base,
+                rows,
+                tally,
+            )
+            if value < best or (not found and value <= best):
+                best, wx, wy = value, vx, vy
+                at_finger, at_slot = i, s
+                found = True
+    if not found:
+        return np.inf, 0.0, 0.0, -1, -1
+    return best, wx, wy, at_finger, at_slot
+
+
+@compiled
+def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, goal):
+    """Search from the cell ``start`` (3,), born at ``floor``, until a pinched hand, a level or a goal.
+
+
+    ``goal`` is a sorted array of cell keys that end the search as an escape does (empty: none);
+    ``stop_above`` ends it when every open pass is above that level.
+
+    Returns (outcome, level, nodes, node_level, edges, edge_value, records, tally, keys, values):
+    nodes (k, 4) = pieces a, b, c and the edge that led here (-1 at the start); node_level (k, 1)
+    running maximum at entry; edges (e, 5) = from node, to node (-1 never visited), finger, slot,
+    unused; edge_value (e, 3) = sigma, w_x, w_y; records (r, 3) = level of a new maximum, birth of
+    the cell behind it, its node; keys, values: the hash table from cell key to node.
+    """
+    m = len(pieces.ptr) - 1
+    base = np.empty((MAX_BASE, 5))
+    rows = np.empty((MAX_ROWS, 4))
+    tally = np.zeros(2, np.int64)
+    nodes = np.empty((256, 4), np.int64)
+    node_level = np.empty((256, 1))
+    edges = np.empty((1024, 5), np.int64)
+    edge_value = np.empty((1024, 3))
+    records = np.empty((64, 3))
+    keys = np.full(1024, -1, np.int64)
+    values = np.empty(1024, np.int64)
+    heap_value = np.empty((1024, 1))
+    heap_item = np.empty((1024, 1), np.int64)
+    n_nodes = 0
+    n_edges = 0
+    n_records = 0
+    n_heap = 0
+    level = floor
+    tie = TIE * pieces.scale
+    outcome = CLOSED_IN
+    cell = np.empty(3, np.int64)
+    cell[:] = start
+    via = -1
+    while True:
+        # enter the cell
+        key = (cell[0] * m + cell[1]) * m + cell[2]
+        at = hash_slot(keys, key)
+        keys[at] = key
+        values[at] = n_nodes
+        here = n_nodes
+        nodes[here, 0], nodes[here, 1], nodes[here, 2] = cell[0], cell[1], cell[2]
+        nodes[here, 3] = via
+        node_level[here, 0] = level
+        if via >= 0:
+            edges[via, 1] = here
+        n_nodes += 1
+        if 2 * n_nodes > len(keys):
+            keys, values = rehashed(keys, values)
+        if n_nodes == nodes.shape[0]:
+            nodes = grown_ints(nodes)
+            node_level = grown_floats(node_level)
+        if cell[0] == cell[1] and cell[1] == cell[2]:
+            outcome = ESCAPED
+            break
+        if len(goal) > 0:
+            to = np.searchsorted(goal, key)
+            if to < len(goal) and goal[to] == key:
+                outcome = REACHED
+                break
+        if n_nodes > node_limit:
+            outcome = GAVE_UP
+            break
+        # open its passes
+        for i in range(3):
+            piece = cell[i]
+            j = (i + 1) % 3
+            k = (i + 2) % 3
+            for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+                other = pieces.slot_neighbour[s]
+                if other < 0:
+                    continue
+                step = other - piece
+                if i == 0:
+                    to_key = key + step * m * m
+                elif i == 1:
+                    to_key = key + step * m
+                else:
+                    to_key = key + step
+                at = hash_slot(keys, to_key)
+                if keys[at] != -1:
+                    continue
+                t = s + 1 if s + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
+                value, wx, wy = pass_value(
+                    pieces,
+                    z,
+                    i,
+                    pieces.slot_vertex[s],
+                    pieces.slot_vertex[t],
+                    j,
+                    cell[j],
+                    k,
+                    cell[k],
+                    cap,
+                    worst,
+                    base,
+                    rows,
+                    tally,
+                )
+                if value == np.inf:
+                    continue
+                if n_edges == edges.shape[0]:
+                    edges = grown_ints(edges)
+                    edge_value = grown_floats(edge_value)
+                edges[n_edges, 0], edges[n_edges, 1] = here, -1
+                edges[n_edges, 2], edges[n_edges, 3], edges[n_edges, 4] = i, s, to_key
+                edge_value[n_edges, 0] = value
+                edge_value[n_edges, 1], edge_value[n_edges, 2] = wx, wy
+                if n_heap == heap_value.shape[0]:
+                    heap_value = grown_floats(heap_value)
+                    heap_item = grown_ints(heap_item)
+                heap_push(heap_value[:, 0], heap_item[:, 0], n_heap, value, n_edges)
+                n_heap += 1
+                n_edges += 1
+        # the lowest pass to a cell not seen yet
+        found = False
+        while n_heap > 0 and not found:
+            value = heap_value[0, 0]
+            via = heap_item[0, 0]
+            heap_pop(heap_value[:, 0], heap_item[:, 0], n_heap)
+            n_heap -= 1
+            at = hash_slot(keys, edges[via, 4])
+            if keys[at] == -1:
+                found = True
+            else:
+                edges[via, 1] = values[at]
+        if not found:
+            level = np.inf
+            break
+        if value > stop_above:
+            level = value
+            break
+        source = edges[via, 0]
+        cell[0], cell[1], cell[2] = nodes[source, 0], nodes[source, 1], nodes[source, 2]
+        cell[edges[via, 2]] = pieces.slot_neighbour[edges[via, 3]]
+        if value >= level - tie:
+            # entered for the first time at the running maximum, so what lies lower behind this
+            # pass was not reachable below it; ties (several facets through one vertex) included
+            level = max(level, value)
+            behind, wx, wy, fi, sl = birth(
+                pieces, z, cell[0], cell[1], cell[2], level, worst, base, rows, tally
+            )
+            if n_records == records.shape[0]:
+                records = grown_floats(records)
+            records[n_records, 0] = level
+            records[n_records, 1] = min(behind, level)
+            records[n_records, 2] = n_nodes
+            n_records += 1
+    # passes left open may still lead between two visited cells
+    for e in range(n_edges):
+        if edges[e, 1] == -1:
+            at = hash_slot(keys, edges[e, 4])
+            if keys[at] != -1:
+                edges[e, 1] = values[at]
+    return (
+        outcome,
+        level,
+        nodes[:n_nodes],
+        node_level[:n_nodes, 0],
+        edges[:n_edges],
+        edge_value[:n_edges],
+        records[:n_records],
+        tally,
+        keys,
+        values,
+    )

@@ -1,0 +1,84 @@
+"""The merge tree of the cells that a search has visited: minima, merges, and who is joined when."""
+
+# pyright: basic
+from __future__ import annotations
+
+import numpy as np
+
+from icage.kernels.compiled import compiled
+from icage.kernels.facet import MAX_BASE, MAX_ROWS
+from icage.kernels.search import birth
+
+
+@compiled
+def births(pieces, z, nodes, cap, worst):
+    """Least sigma of every node: (n, 3) = sigma, w_x, w_y and (n, 2) = finger, slot."""
+    base = np.empty((MAX_BASE, 5))
+    rows = np.empty((MAX_ROWS, 4))
+    tally = np.zeros(2, np.int64)
+    value = np.empty((len(nodes), 3))
+    where = np.empty((len(nodes), 2), np.int64)
+    for k in range(len(nodes)):
+        value[k, 0], value[k, 1], value[k, 2], where[k, 0], where[k, 1] = birth(
+            pieces, z, nodes[k, 0], nodes[k, 1], nodes[k, 2], cap, worst, base, rows, tally
+        )
+    return value, where
+
+
+@compiled
+def find_at(parent, stamp, node, level):
+    """Representative of ``node``'s component among the cells joined at or below ``level``."""
+    while parent[node] != node and stamp[node] <= level:
+        node = parent[node]
+    return node
+
+
+@compiled
+def merge(node_birth, edges, edge_value, below):
+    """Kruskal over the passes below a level.
+
+    Union by size, no path compression: ``stamp`` is the level at which a node was hung below its
+    parent, so that the tree answers for every level. Returns (parent, stamp, merges, lows):
+    merges (m, 4) ints = surviving minimum, swallowed minimum (nodes), edge, 1 if the start (node
+    0) was on the swallowed side or 2 if on the surviving one, 0 if on neither; lows (m, 2) =
+    level, level - birth of the swallowed minimum.
+    """
+    n = len(node_birth)
+    parent = np.arange(n)
+    stamp = np.full(n, np.inf)
+    size = np.ones(n, np.int64)
+    lowest = np.arange(n)
+    merges = np.empty((n, 4), np.int64)
+    lows = np.empty((n, 2))
+    count = 0
+    order = np.argsort(edge_value, kind="mergesort")
+    for e in order:
+        if edge_value[e] >= below:
+            break
+        if edges[e, 1] < 0:
+            continue
+        a = find_at(parent, stamp, edges[e, 0], np.inf)
+        b = find_at(parent, stamp, edges[e, 1], np.inf)
+        if a == b:
+            continue
+        start = find_at(parent, stamp, 0, np.inf)
+        low_a = lowest[a]
+        low_b = lowest[b]
+        swap = node_birth[low_a] > node_birth[low_b] or (
+            node_birth[low_a] == node_birth[low_b] and low_a > low_b
+        )
+        keep, lose = (low_b, low_a) if swap else (low_a, low_b)
+        merges[count, 0], merges[count, 1], merges[count, 2] = keep, lose, e
+        merges[count, 3] = 0
+        if start == a or start == b:
+            merges[count, 3] = 1 if (start == a) == swap else 2
+        lows[count, 0] = edge_value[e]
+        lows[count, 1] = edge_value[e] - node_birth[lose]
+        count += 1
+        if size[a] < size[b]:
+            a, b = b, a
+        parent[b] = a
+        stamp[b] = edge_value[e]
+        size[a] += size[b]
+        lowest[a] = keep
+    return parent, stamp, merges[:count], lows[:count]

@@ -1,0 +1,201 @@
+"""Grasps and punctures of the target's component, read off the merge tree."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from icage.arrays import FloatArray
+from icage.cage import GraspMinimum, Puncture
+from icage.solver import Configuration, Search, Terrain, Tree, below_escape
+from icage.target import Target, plateau_through
+from icage.tolerance import DEPTH_CUT, FREE_FINGER, LEVEL
+
+
+class Joining(NamedTuple):
+    """The target's component meets another one, which holds these minima (nodes)."""
+
+    sigma: float
+    edge: int
+    minima: tuple[int, ...]
+
+
+def joinings(tree: Tree, depth_cut: float) -> list[Joining]:
+    """Merges of the target's component with components deeper than ``depth_cut`` [unit].
+
+    A minimum swallowed less deep than that does not count; its component is only a part of the
+    slope of the one that swallows it.
+    """
+    members: dict[int, list[int]] = {}
+    met: list[Joining] = []
+    for (keep, lose, edge, side), (level, depth) in zip(
+        tree.merges.tolist(), tree.lows.tolist(), strict=True
+    ):
+        kept = members.pop(keep, [keep])
+        lost = members.pop(lose, [lose])
+        if depth > depth_cut:
+            if side:
+                met.append(Joining(level, edge, tuple(kept if side == 1 else lost)))
+            members[keep] = kept + lost
+        else:
+            # a shallow minimum holds no other: had it swallowed one, it would be deeper still
+            members[keep] = kept
+    return met
+
+
+def first_joining(tree: Tree, depth_cut: float, escape: float) -> float:
+    """sigma_first for a given depth cut, [unit]."""
+    met = joinings(tree, depth_cut)
+    return met[0].sigma if met else escape
+
+
+def grasps_and_punctures(
+    found: Search, tree: Tree, target: Target
+) -> tuple[tuple[GraspMinimum, ...], tuple[Puncture, ...], tuple[int, ...]]:
+    """All grasps (the target first), the punctures in ascending order, and each grasp's node."""
+    terrain = found.terrain
+    met = joinings(tree, DEPTH_CUT * terrain.pieces.diameter)
+    others: list[tuple[GraspMinimum, int]] = []
+    for joining in met:
+        for node in joining.minima:
+            others.append((_grasp(terrain, found, tree, node, joining.sigma), node))
+    others.sort(key=lambda pair: (round(pair[0].sigma, 12), pair[0].contacts.ravel().tolist()))
+    first = _target_grasp(terrain, target)
+    ids = {node: k + 1 for k, (_, node) in enumerate(others)}
+    grasps = [first] + [_with_id(g, k + 1) for k, (g, _) in enumerate(others)]
+    punctures = _intermediate(found, met, ids)
+    if found.escaped:
+        punctures.append(_escape(found))
+    nodes = (0, *(node for _, node in others))
+    return tuple(grasps), tuple(punctures), nodes
+
+
+def _with_id(grasp: GraspMinimum, number: int) -> GraspMinimum:
+    return GraspMinimum(
+        number,
+        False,
+        grasp.sigma,
+        grasp.contacts,
+        grasp.plateau,
+        grasp.free_fingers,
+        grasp.joined_at,
+    )
+
+
+def _target_grasp(terrain: Terrain, target: Target) -> GraspMinimum:
+    contacts = terrain.contacts(target.at)
+    return GraspMinimum(
+        0,
+        True,
+        target.sigma_0,
+        contacts,
+        _plateau_contacts(terrain, target.plateau),
+        free_fingers(terrain, contacts),
+        target.sigma_0,
+    )
+
+
+def _grasp(
+    terrain: Terrain, found: Search, tree: Tree, node: int, joined_at: float
+) -> GraspMinimum:
+    sigma, wx, wy = tree.birth[node].tolist()
+    finger, slot = tree.birth_at[node].tolist()
+    a, b = terrain.on_edge(found.nodes[node, :3], finger, slot, wx, wy)
+    here = Configuration(0.5 * (a.d + b.d), a.w)
+    plateau = plateau_through(terrain, here, sigma)
+    contacts = terrain.contacts(here)
+    return GraspMinimum(
+        -1,
+        False,
+        sigma,
+        contacts,
+        _plateau_contacts(terrain, plateau),
+        free_fingers(terrain, contacts),
+        joined_at,
+    )
+
+
+def _plateau_contacts(
+    terrain: Terrain, plateau: tuple[Configuration, Configuration] | None
+) -> tuple[FloatArray, FloatArray] | None:
+    if plateau is None:
+        return None
+    return terrain.contacts(plateau[0]), terrain.contacts(plateau[1])
+
+
+def _intermediate(found: Search, met: list[Joining], ids: dict[int, int]) -> list[Puncture]:
+    """Punctures below the escape; simultaneous ones share an entry."""
+    punctures: list[Puncture] = []
+    for joining in met:
+        joins = tuple(sorted(ids[node] for node in joining.minima))
+        last = punctures[-1] if punctures else None
+        if last is not None and joining.sigma <= last.sigma * (1.0 + 2.0 * LEVEL):
+            joins = tuple(sorted((*last.joins, *joins)))
+            punctures[-1] = Puncture(
+                last.sigma, "intermediate", joins, last.contacts, last.free_fingers
+            )
+            continue
+        contacts = found.terrain.contacts(found.edge_configuration(joining.edge))
+        punctures.append(
+            Puncture(
+                joining.sigma,
+                "intermediate",
+                joins,
+                contacts,
+                free_fingers(found.terrain, contacts),
+            )
+        )
+    return punctures
+
+
+def escape_edge(found: Search) -> int:
+    """The pass of the escape puncture: the first one above all those before the pinched hand."""
+    path = path_edges(found)
+    high = found.edge_value[path, 0]
+    return path[int(np.argmax(high >= below_escape(found)))]
+
+
+def path_edges(found: Search) -> list[int]:
+    """Edges from the target's cell to the pinched one, in order."""
+    edges: list[int] = []
+    node = len(found.nodes) - 1
+    while found.nodes[node, 3] >= 0:
+        edges.append(int(found.nodes[node, 3]))
+        node = int(found.edges[edges[-1], 0])
+    return edges[::-1]
+
+
+def _escape(found: Search) -> Puncture:
+    contacts = found.terrain.contacts(found.edge_configuration(escape_edge(found)))
+    return Puncture(found.level, "escape", (), contacts, free_fingers(found.terrain, contacts))
+
+
+def free_fingers(terrain: Terrain, contacts: FloatArray) -> tuple[int, ...]:
+    """Fingers (of 1, 2, 3) that touch nothing."""
+    gap = shapely.distance(shapely.points(contacts), terrain.outline.polygon.exterior)
+    return tuple(k + 1 for k in range(3) if gap[k] > FREE_FINGER * terrain.pieces.diameter)
+
+
+def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
+    """Placements (k, 4) from the target to a pinched hand, and the least finger gap before it.
+
+    Between neighbours d and w move in a straight line, so every finger does; both ends lie in one
+    cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
+    """
+    points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
+    smallest = min(_least_norm(a.w, b.w) for a, b in zip(points, points[1:], strict=False))
+    rows = [found.terrain.placement(p) for p in points]
+    rows.append(np.array([*rows[-1][:3], 0.0]))
+    side = min(1.0, abs(found.terrain.hand.z_3), abs(found.terrain.hand.z_3 - 1.0))
+    return np.array(rows), smallest * side
+
+
+def _least_norm(a: complex, b: complex) -> float:
+    """Least |w| on the segment from a to b."""
+    side = b - a
+    if abs(side) == 0.0:
+        return abs(a)
+    t = float(np.clip(-(a * np.conj(side)).real / abs(side) ** 2, 0.0, 1.0))
+    return abs(a + t * side)

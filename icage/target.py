@@ -1,0 +1,175 @@
+"""The target: the strict local minimum of sigma next to the contacts that were asked for.
+
+Each cell that holds a local minimum has it as its own least point (sigma is convex on a cell), so
+being a local minimum is decided by the few cells round the contacts, with no descent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from icage.exterior import Pieces
+from icage.hand import HandShape
+from icage.kernels.tree import births
+from icage.solver import Configuration, Terrain
+from icage.tolerance import DEPTH_CUT, SAME_POINT, TARGET_SHIFT, TARGET_TURN
+
+_MAX_CELLS = 20_000
+"""Cells round a target that are looked at; a vertex of a fine fan has some tens of pieces."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A local minimum, the cell to start from, and how far it is from what was asked."""
+
+    at: Configuration
+    cell: IntArray
+    sigma_0: float
+    moved: float
+    turned: float
+    plateau: tuple[Configuration, Configuration] | None
+
+
+def pieces_near(pieces: Pieces, point: complex, reach: float) -> IntArray:
+    """Pieces that have a point within about ``reach`` of the given one (relative coordinates)."""
+    a = pieces.slot_vertex
+    inside = pieces.normal_x * (point.real - pieces.x[a]) + pieces.normal_y * (
+        point.imag - pieces.y[a]
+    )
+    worst = np.minimum.reduceat(inside, pieces.ptr[:-1])
+    rough = np.flatnonzero(worst >= -reach)
+    if not len(rough):
+        return rough
+    # half planes alone accept far too much beyond the tip of a sliver: take the true distance
+    x, y = pieces.x, pieces.y
+    b = _slot_end(pieces)
+    side_x, side_y = x[b] - x[a], y[b] - y[a]
+    t = ((point.real - x[a]) * side_x + (point.imag - y[a]) * side_y) / (side_x**2 + side_y**2)
+    t = np.clip(t, 0.0, 1.0)
+    gap = np.hypot(x[a] + t * side_x - point.real, y[a] + t * side_y - point.imag)
+    nearest = np.minimum.reduceat(gap, pieces.ptr[:-1])
+    return rough[(worst[rough] >= 0.0) | (nearest[rough] <= reach)]
+
+
+def _slot_end(pieces: Pieces) -> IntArray:
+    """End vertex of every slot."""
+    after = np.arange(1, len(pieces.slot_vertex) + 1)
+    after[pieces.ptr[1:] - 1] = pieces.ptr[:-1]
+    return pieces.slot_vertex[after]
+
+
+def cells_near(terrain: Terrain, at: Configuration, reach: float) -> IntArray:
+    """All cells (k, 3) whose pieces come within ``reach`` of the fingers."""
+    near = [pieces_near(terrain.pieces, complex(f), reach) for f in terrain.fingers(at)]
+    if np.prod([len(n) for n in near], dtype=float) > _MAX_CELLS:
+        near = [n[:27] for n in near]
+    return np.array(list(product(*near)), dtype=np.int64).reshape(-1, 3)
+
+
+def shift_between(hand: HandShape, a: Configuration, b: Configuration) -> float:
+    """Largest distance that a finger moves from one configuration to the other."""
+    return float(np.abs((b.d - a.d) + (b.w - a.w) * hand.z).max())
+
+
+def turn_between(a: Configuration, b: Configuration) -> float:
+    """Angle between two configurations, [rad]."""
+    return abs(float(np.angle(b.w * np.conj(a.w)))) if a.w and b.w else 0.0
+
+
+def find_target(
+    terrain: Terrain,
+    wanted: Configuration,
+    *,
+    reach: float = TARGET_SHIFT,
+    turn: float = TARGET_TURN,
+) -> Target | None:
+    """The local minimum nearest to a configuration, or None if there is none within ``reach``.
+
+    ``reach`` [diameter] bounds how far a finger may be from where it was asked to be.
+    """
+    size = terrain.pieces.diameter
+    cells = cells_near(terrain, wanted, reach * size)
+    if not len(cells):
+        return None
+    value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+    best: Target | None = None
+    for k in np.argsort(value[:, 0], kind="stable"):
+        if not 0.0 < value[k, 0] < np.inf:
+            continue
+        ends = terrain.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), value[k, 1], value[k, 2])
+        here = nearest_on(ends, wanted)
+        moved = shift_between(terrain.hand, wanted, here) / size
+        turned = turn_between(wanted, here)
+        if moved > reach or turned > turn or (best is not None and moved >= best.moved):
+            continue
+        if is_local_minimum(terrain, here, float(value[k, 0])):
+            ends = plateau_through(terrain, here, float(value[k, 0]))
+            best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
+    return best
+
+
+def nearest_on(ends: tuple[Configuration, Configuration], wanted: Configuration) -> Configuration:
+    """The configuration between two (same w) whose finger 1 is nearest to the wanted one's."""
+    a, b = ends
+    side = b.d - a.d
+    if abs(side) == 0.0:
+        return a
+    t = ((wanted.d - a.d) * np.conj(side)).real / abs(side) ** 2
+    return Configuration(a.d + float(np.clip(t, 0.0, 1.0)) * side, a.w)
+
+
+def is_local_minimum(terrain: Terrain, here: Configuration, sigma: float) -> bool:
+    """Whether no cell round the configuration goes deeper by more than the depth cut."""
+    size = terrain.pieces.diameter
+    cells = cells_near(terrain, here, SAME_POINT * size)
+    value, _ = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * size)
+
+
+def plateau_through(
+    terrain: Terrain, here: Configuration, sigma: float
+) -> tuple[Configuration, Configuration] | None:
+    """Ends of the translations at constant sigma through a minimum (opposing parallel edges).
+
+    The hand keeps w, so the set is a segment of d; it is followed from cell to cell.
+    """
+    size = terrain.pieces.diameter
+    reach = SAME_POINT * size
+    ends = [here, here]
+    for side in range(2):
+        for _ in range(10 * terrain.pieces.count):
+            best = ends[side]
+            cells = cells_near(terrain, ends[side], reach)
+            value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+            for k in range(len(cells)):
+                w = complex(value[k, 1], value[k, 2])
+                if not value[k, 0] <= sigma + DEPTH_CUT * size or abs(w - here.w) > reach:
+                    continue
+                for end in terrain.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), w.real, w.imag):
+                    if _further(here, ends[1 - side], best, end, reach):
+                        best = Configuration(end.d, here.w)
+            if best is ends[side]:
+                break
+            ends[side] = best
+    if abs(ends[0].d - ends[1].d) <= 1e3 * reach:
+        return None
+    return ends[0], ends[1]
+
+
+def _further(
+    here: Configuration, other: Configuration, best: Configuration, end: Configuration, reach: float
+) -> bool:
+    """Whether ``end`` lies further from ``here`` than ``best``, on the side away from ``other``."""
+    if abs(end.d - here.d) <= abs(best.d - here.d) + reach:
+        return False
+    return ((end.d - here.d) * np.conj(other.d - here.d)).real <= 0.0
+
+
+def contacts_as_configuration(terrain: Terrain, contacts: FloatArray) -> Configuration:
+    """The configuration whose fingers 1 and 2 are at the first two contacts."""
+    d = complex(*(contacts[0] - terrain.origin))
+    return Configuration(d, complex(*(contacts[1] - contacts[0])))
