@@ -51,11 +51,14 @@ class Puncture:
 class CageWork:
     """What the search left behind, for queries and regions: internal to the planner."""
 
-    outline: Outline
     search: Search
     tree: Tree
     minimum_node: tuple[int, ...]
     """Node of each grasp, by id."""
+    sagitta: float = 0.0
+    """How far the polygon searched may lie inside the true offset, [unit] (0 for points)."""
+    remembered: dict[str, object] = field(default_factory=dict[str, object])
+    """Point location and escape levels, built when first asked for (see membership)."""
 
 
 @dataclass(frozen=True, slots=True)

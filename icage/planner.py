@@ -124,7 +124,7 @@ def cage_on(
         escape_path=path,
         min_finger_gap=gap,
         warnings=_cut_warnings(tree, found.level, size),
-        work=CageWork(terrain.outline, found, tree, nodes),
+        work=CageWork(found, tree, nodes),
     )
 
 

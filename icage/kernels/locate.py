@@ -1,0 +1,149 @@
+"""Which piece holds a point, and how deep a point is inside a polygon."""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from icage.kernels.compiled import compiled
+from icage.kernels.storage import hash_slot
+
+
+@compiled
+def build_buckets(pieces, low_x, low_y, size, side):
+    """Pieces that may meet each square of a ``side`` x ``side`` grid: (start, items), CSR."""
+    m = len(pieces.ptr) - 1
+    counts = np.zeros(side * side + 1, np.int64)
+    for fill in range(2):
+        if fill == 1:
+            for k in range(side * side):
+                counts[k + 1] += counts[k]
+            start = counts.copy()
+            items = np.empty(counts[side * side], np.int64)
+            put = counts.copy()
+        for k in range(m):
+            x0 = np.inf
+            x1 = -np.inf
+            y0 = np.inf
+            y1 = -np.inf
+            for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
+                v = pieces.slot_vertex[s]
+                x0 = min(x0, pieces.x[v])
+                x1 = max(x1, pieces.x[v])
+                y0 = min(y0, pieces.y[v])
+                y1 = max(y1, pieces.y[v])
+            i0 = max(0, int(math.floor((x0 - low_x) / size - 1e-6)))
+            i1 = min(side - 1, int(math.floor((x1 - low_x) / size + 1e-6)))
+            j0 = max(0, int(math.floor((y0 - low_y) / size - 1e-6)))
+            j1 = min(side - 1, int(math.floor((y1 - low_y) / size + 1e-6)))
+            for i in range(i0, i1 + 1):
+                for j in range(j0, j1 + 1):
+                    cx = low_x + (i + 0.5) * size
+                    cy = low_y + (j + 0.5) * size
+                    apart = False
+                    for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
+                        v = pieces.slot_vertex[s]
+                        nx = pieces.normal_x[s]
+                        ny = pieces.normal_y[s]
+                        gap = nx * (cx - pieces.x[v]) + ny * (cy - pieces.y[v])
+                        if gap < -0.5001 * size * (abs(nx) + abs(ny)):
+                            apart = True
+                            break
+                    if apart:
+                        continue
+                    if fill == 0:
+                        counts[i * side + j + 1] += 1
+                    else:
+                        items[put[i * side + j]] = k
+                        put[i * side + j] += 1
+    return start, items
+
+
+@compiled
+def _slack(pieces, k, x, y):
+    """How far inside the half planes of piece k a point is."""
+    least = np.inf
+    for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
+        v = pieces.slot_vertex[s]
+        gap = pieces.normal_x[s] * (x - pieces.x[v]) + pieces.normal_y[s] * (y - pieces.y[v])
+        least = min(least, gap)
+    return least
+
+
+@compiled
+def locate(pieces, start, items, low_x, low_y, size, side, x, y, tolerance):
+    """Piece that holds (x, y): an index, or -1 if none does to within ``tolerance``."""
+    i = int(math.floor((x - low_x) / size))
+    j = int(math.floor((y - low_y) / size))
+    best = -tolerance
+    found = -1
+    if 0 <= i < side and 0 <= j < side:
+        for at in range(start[i * side + j], start[i * side + j + 1]):
+            gap = _slack(pieces, items[at], x, y)
+            if gap >= best:
+                best = gap
+                found = items[at]
+        return found
+    for k in range(len(pieces.ptr) - 1):
+        gap = _slack(pieces, k, x, y)
+        if gap >= best:
+            best = gap
+            found = k
+    return found
+
+
+@compiled
+def cells_of(pieces, fingers, start, items, low_x, low_y, size, side, tolerance):
+    """Pieces of the three fingers of every placement, (n, 3); -1 where there is none."""
+    cells = np.empty((len(fingers), 3), np.int64)
+    for row in range(len(fingers)):
+        for f in range(3):
+            cells[row, f] = locate(
+                pieces, start, items, low_x, low_y, size, side,
+                fingers[row, f, 0], fingers[row, f, 1], tolerance,
+            )  # fmt: skip
+    return cells
+
+
+@compiled
+def depth_inside(ring, points, radius):
+    """How far each point (n, 2) is inside the polygon grown by ``radius``; negative outside."""
+    n = len(ring)
+    depth = np.empty(len(points))
+    for row in range(len(points)):
+        x = points[row, 0]
+        y = points[row, 1]
+        nearest = np.inf
+        odd = False
+        for a in range(n):
+            b = a + 1 if a + 1 < n else 0
+            ax = ring[a, 0]
+            ay = ring[a, 1]
+            sx = ring[b, 0] - ax
+            sy = ring[b, 1] - ay
+            t = ((x - ax) * sx + (y - ay) * sy) / (sx * sx + sy * sy)
+            t = min(1.0, max(0.0, t))
+            gx = x - ax - t * sx
+            gy = y - ay - t * sy
+            nearest = min(nearest, gx * gx + gy * gy)
+            if (ay > y) != (ring[b, 1] > y) and x < ax + (y - ay) / sy * sx:
+                odd = not odd
+        gap = math.sqrt(nearest)
+        depth[row] = radius + gap if odd else radius - gap
+    return depth
+
+
+@compiled
+def nodes_of(keys, values, cells, m, inside):
+    """Visited node of every cell (n, 3), or -1 where it was not reached below the escape."""
+    nodes = np.empty(len(cells), np.int64)
+    for row in range(len(cells)):
+        nodes[row] = -1
+        if cells[row, 0] >= 0 and cells[row, 1] >= 0 and cells[row, 2] >= 0:
+            key = (cells[row, 0] * m + cells[row, 1]) * m + cells[row, 2]
+            at = hash_slot(keys, key)
+            if keys[at] != -1 and values[at] < inside:
+                nodes[row] = values[at]
+    return nodes
