@@ -44,3 +44,9 @@ configuration, far below every feature that survives MERGE_VERTEX in practice.""
 
 FREE_FINGER: Final = 1e-7
 """[diameter] A finger further than this from the outline touches nothing."""
+
+SIGMA_MAX_GAP: Final = 1e-4
+"""[1] Disc fingers: arcs are refined until sigma_max is bracketed this well (relative). [contract]"""
+
+SIGMA_FIRST_SPREAD: Final = 1e-3
+"""[1] Disc fingers: sigma_first counts as converged if all resolutions agree to this. [contract]"""

@@ -1,0 +1,229 @@
+"""The cage for disc fingers: brackets from inner and outer polygons at several resolutions.
+
+sigma_max grows with the obstacle: chords give a lower bound, tangents an upper one, and both are
+refined until they agree. sigma_first does not (a larger obstacle can make a minimum or destroy
+one), so no polygon bounds it: the smallest value met is the one to trust. [theory.md, 4]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from icage.cage import Cage, GraspMinimum, Puncture
+from icage.errors import GeometryError
+from icage.finger import Offsets, check_disc_contacts, directions_on_arcs, offsets
+from icage.hand import HandShape
+from icage.minima import escape_path
+from icage.outline import Outline
+from icage.planner import cage_on, not_a_cage
+from icage.solver import Search, Terrain, search
+from icage.target import Target, contacts_as_configuration, find_target
+from icage.tolerance import LEVEL, SIGMA_FIRST_SPREAD, SIGMA_MAX_GAP, TARGET_SHIFT
+from icage.true_curve import refine
+from icage.why import why_not
+
+RESOLUTIONS = (16, 24, 32)
+"""Segments per quadrant at which sigma_first is always looked at."""
+
+FINER = (64, 128, 256)
+"""... and those that follow while the bracket of sigma_max is too wide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """One polygon that stands in for the true curve, and what was found round it."""
+
+    segments: int
+    inner: bool
+    target: Target
+    found: Search
+    sagitta: float
+
+    @property
+    def sigma_max(self) -> float:
+        """Escape level on this polygon, inf if there is none."""
+        return self.found.level
+
+    @property
+    def sigma_first(self) -> float:
+        """First level on this polygon."""
+        return self.found.sigma_first()
+
+
+def plan_discs(outline: Outline, hand: HandShape, contacts: FloatArray, radius: float) -> Cage:
+    """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
+    check_disc_contacts(outline, radius, contacts)
+    true = _true_target(outline, hand, contacts, radius)
+    looks, closed = _looks(outline, hand, true, radius)
+    lower = [look for look in looks if look.inner]
+    if not lower:
+        return _nothing_there(outline, hand, contacts, radius)
+    basis = max(lower, key=lambda look: (look.sigma_max, look.segments))
+    cage = cage_on(basis.found.terrain, contacts, basis.target, outline, radius)
+    if cage.verdict == "not_a_cage":
+        return replace(cage, contacts=contacts)
+    return _bracketed(cage, looks, basis, true, contacts, closed)
+
+
+def _true_target(
+    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float
+) -> FloatArray:
+    """The target on the true curve if a contact lies on an arc, else as given."""
+    if not directions_on_arcs(outline, radius, contacts):
+        return contacts
+    solved = refine(outline, hand, radius, contacts)
+    if solved is None:
+        return contacts
+    near = float(np.hypot(*(solved - contacts).T).max()) <= TARGET_SHIFT * outline.diameter
+    return solved if near else contacts
+
+
+def _looks(
+    outline: Outline, hand: HandShape, true: FloatArray, radius: float
+) -> tuple[list[Look], int]:
+    """Inner and outer polygons, refined until sigma_max is bracketed."""
+    through = directions_on_arcs(outline, radius, true)
+    looks: list[Look] = []
+    closed = 0
+    for segments in (*RESOLUTIONS, *FINER):
+        if segments in FINER and _narrow(looks):
+            break
+        grown = offsets(outline, radius, segments, through)
+        closed = grown.closed_pockets
+        for inner in (True, False):
+            look = _look(grown, hand, true, segments, inner, radius if through else 0.0)
+            if look is not None:
+                looks.append(look)
+        if not looks:
+            break
+    return looks, closed
+
+
+def _narrow(looks: list[Look]) -> bool:
+    low = max((k.sigma_max for k in looks if k.inner), default=0.0)
+    high = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
+    return low == high or high / low - 1.0 < SIGMA_MAX_GAP
+
+
+def _look(
+    grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float
+) -> Look | None:
+    """The search on one polygon; ``arc`` is the radius of an arc that carries a contact, or 0."""
+    polygon = grown.inner if inner else grown.outer
+    terrain = Terrain.around(polygon, hand)
+    # on chords a contact of an arc may rest anywhere on its own chord
+    chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
+    target = find_target(
+        terrain, contacts_as_configuration(terrain, true), reach=max(TARGET_SHIFT, chord),
+        turn=max(1e-3, 10.0 * chord),
+    )  # fmt: skip
+    if target is None or target.plateau is not None:
+        return None
+    found = search(terrain, target.cell, target.sigma_0)
+    if found.gave_up:
+        raise GeometryError(f"the search gave up after {len(found.nodes)} cells")
+    return Look(segments, inner, target, found, grown.sagitta)
+
+
+def _nothing_there(outline: Outline, hand: HandShape, contacts: FloatArray, radius: float) -> Cage:
+    terrain = Terrain.around(offsets(outline, radius, 32).inner, hand)
+    target = find_target(terrain, contacts_as_configuration(terrain, contacts))
+    if target is not None and target.plateau is not None:
+        return cage_on(terrain, contacts, target, outline, radius)
+    return not_a_cage(outline, hand, contacts, why_not(terrain, contacts), radius)
+
+
+def _bracketed(
+    cage: Cage, looks: list[Look], basis: Look, true: FloatArray, contacts: FloatArray, closed: int
+) -> Cage:
+    """The cage of the basis polygon with the brackets and the true grasps put in."""
+    low = basis.sigma_max
+    outer = [look for look in looks if not look.inner]
+    best_outer = min(outer, key=lambda look: look.sigma_max) if outer else None
+    high = best_outer.sigma_max if best_outer is not None else np.inf
+    if low > high * (1.0 + 1e-9):
+        raise GeometryError(f"inner sigma_max {low} above outer {high}: a planner's error")
+    high = max(low, high)
+    firsts = [look.sigma_first for look in looks]
+    first, first_upper = min(*firsts, low), max(firsts)
+    if all(look.sigma_first == look.sigma_max for look in looks):
+        # nothing comes before the escape anywhere: then its bracket, which is narrower, holds
+        first, first_upper = low, high
+    converged = first == first_upper or first_upper / first - 1.0 <= SIGMA_FIRST_SPREAD
+    grasps = _on_true_curve(cage, true)
+    path, gap = cage.escape_path, cage.min_finger_gap
+    if best_outer is not None and best_outer.found.escaped:
+        path, gap = escape_path(best_outer.found, best_outer.target)
+        path = np.vstack([grasps[0].placement.as_array(), path])
+    return replace(
+        cage,
+        contacts=grasps[0].contacts,
+        sigma_0=grasps[0].sigma,
+        sigma_first=_finite(first),
+        sigma_max=_finite(low),
+        sigma_max_upper=_finite(high),
+        sigma_first_upper=_finite(first_upper),
+        sigma_first_converged=converged,
+        adjusted_by=float(np.hypot(*(grasps[0].contacts - contacts).T).max()),
+        punctures=_punctures(cage, first),
+        grasps=grasps,
+        escape_path=path,
+        min_finger_gap=gap,
+        warnings=(*cage.warnings, *_warnings(looks, low, high, converged, closed)),
+        work=None if cage.work is None else replace(cage.work, sagitta=basis.sagitta),
+    )
+
+
+def _finite(level: float) -> float | None:
+    return float(level) if np.isfinite(level) else None
+
+
+def _on_true_curve(cage: Cage, true: FloatArray) -> tuple[GraspMinimum, ...]:
+    """The grasps of the basis polygon; those that touch an arc solved on the true curve."""
+    outline, hand, radius = cage.outline, cage.hand, cage.finger_radius
+    grasps: list[GraspMinimum] = []
+    for grasp in cage.grasps:
+        contacts: FloatArray | None = None
+        if grasp.target:
+            contacts = true if directions_on_arcs(outline, radius, true) else None
+        elif grasp.plateau is None:
+            solved = refine(outline, hand, radius, grasp.contacts)
+            if solved is not None:
+                moved = float(np.hypot(*(solved - grasp.contacts).T).max())
+                contacts = solved if moved < 0.2 * radius else None
+        if contacts is not None:
+            sigma = float(np.hypot(*(contacts[1] - contacts[0])))
+            grasp = replace(grasp, contacts=contacts, sigma=sigma)
+        grasps.append(grasp)
+    return tuple(grasps)
+
+
+def _punctures(cage: Cage, first: float) -> tuple[Puncture, ...]:
+    """The punctures of the basis polygon, the first of them at sigma_first."""
+    head = cage.punctures[0] if cage.punctures else None
+    if head is None or not np.isfinite(first):
+        return cage.punctures
+    if abs(head.sigma / first - 1.0) <= SIGMA_FIRST_SPREAD and head.kind == "intermediate":
+        return (replace(head, sigma=first), *cage.punctures[1:])
+    if head.sigma <= first * (1.0 + 2.0 * LEVEL):
+        return cage.punctures
+    return (replace(head, sigma=first, kind="intermediate", joins=()), *cage.punctures)
+
+
+def _warnings(
+    looks: list[Look], low: float, high: float, converged: bool, closed: int
+) -> tuple[str, ...]:
+    told: list[str] = []
+    if closed:
+        told.append(f"the finger's radius closes {closed} pocket(s) of the outline")
+    if not (low == high or high / low - 1.0 < SIGMA_MAX_GAP):
+        told.append(f"sigma_max is bracketed by {low:.9g} and {high:.9g} only")
+    if not converged:
+        spread = ", ".join(
+            f"{k.segments}{'i' if k.inner else 'o'}: {k.sigma_first:.6g}" for k in looks
+        )
+        told.append(f"sigma_first depends on the arc resolution ({spread}); the smallest is used")
+    return tuple(told)

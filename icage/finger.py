@@ -1,0 +1,186 @@
+"""Disc fingers as point fingers: the object grown by the finger's radius. [Bunis2018, Sec. VII-A]
+
+The grown object has straight edges and, round convex vertices, arcs. Only the arcs are split, the
+straight edges stay exact. Chords lie inside the true curve: a smaller obstacle and a lower, safe
+sigma_max. Tangents lie outside: an upper one. (The paper grows by "a disc whose diameter equals
+the finger's radius", a slip: it is the finger's radius.)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from icage.arrays import FloatArray
+from icage.errors import GraspError
+from icage.outline import Outline
+from icage.tolerance import CONTACT_OFF, MERGE_VERTEX
+
+
+class Offsets(NamedTuple):
+    """The grown object between two polygons."""
+
+    inner: Outline
+    outer: Outline
+    closed_pockets: int
+    """Pockets that the growth has closed into holes; the outer ring alone is kept."""
+    sagitta: float
+    """Largest distance between the inner polygon and the true curve, [unit]."""
+
+
+class Arc(NamedTuple):
+    """The arc round one convex vertex: directions from ``start`` counterclockwise by ``turn``."""
+
+    vertex: FloatArray
+    start: float
+    turn: float
+
+
+def arcs(outline: Outline) -> list[Arc]:
+    """Arcs of the grown object, one per convex vertex (also those that others cover)."""
+    points = outline.vertices
+    side = np.roll(points, -1, axis=0) - points
+    heading = np.arctan2(side[:, 1], side[:, 0])
+    before = np.roll(heading, 1)
+    turn = (heading - before + np.pi) % (2.0 * np.pi) - np.pi
+    return [
+        Arc(points[k], float(before[k]) - 0.5 * math.pi, float(turn[k]))
+        for k in np.flatnonzero(turn > 1e-9)
+    ]
+
+
+def offsets(
+    outline: Outline,
+    radius: float,
+    segments: int,
+    through: Mapping[int, tuple[float, ...]] | None = None,
+) -> Offsets:
+    """Inner (chords) and outer (tangents) polygon of the outline grown by ``radius``.
+
+    Parameters
+    ----------
+    segments:
+        Segments of an arc per quadrant.
+    through:
+        For arc number -> directions [rad] at which both polygons must touch the true curve.
+    """
+    wanted = through or {}
+    inner = [outline.polygon, *_strips(outline, radius)]
+    outer = list(inner)
+    sagitta = 0.0
+    for number, arc in enumerate(arcs(outline)):
+        chords, tangents, widest = _split(arc, radius, segments, wanted.get(number, ()))
+        inner.append(chords)
+        outer.append(tangents)
+        sagitta = max(sagitta, radius * (1.0 - math.cos(0.5 * widest)))
+    grown, holes = _exterior(inner, outline, radius)
+    grown_out, _ = _exterior(outer, outline, radius)
+    return Offsets(grown, grown_out, holes, sagitta)
+
+
+def _strips(outline: Outline, radius: float) -> list[shapely.Polygon]:
+    """A rectangle on the outside of every edge; its corners are the ends of the arcs, bit for bit."""
+    a = outline.vertices
+    b = np.roll(a, -1, axis=0)
+    side = b - a
+    out = radius * np.column_stack([side[:, 1], -side[:, 0]]) / np.hypot(*side.T)[:, None]
+    return [shapely.Polygon([p, p + n, q + n, q]) for p, q, n in zip(a, b, out, strict=True)]
+
+
+def _split(
+    arc: Arc, radius: float, segments: int, through: tuple[float, ...]
+) -> tuple[shapely.Polygon, shapely.Polygon, float]:
+    """The fan of chords and the fan of tangents of one arc, and its widest step [rad]."""
+    stops = sorted(
+        {0.0, arc.turn, *(t for t in (_along(arc, x) for x in through) if t is not None)}
+    )
+    angles: list[float] = [0.0]
+    for low, high in zip(stops, stops[1:], strict=False):
+        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - 1e-9))
+        angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
+    at = arc.start + np.array(angles)
+    on_arc = arc.vertex + radius * np.column_stack([np.cos(at), np.sin(at)])
+    step = np.diff(at)
+    middle = at[:-1] + 0.5 * step
+    reach = radius / np.cos(0.5 * step)
+    corners = arc.vertex + reach[:, None] * np.column_stack([np.cos(middle), np.sin(middle)])
+    chords = shapely.Polygon([arc.vertex, *on_arc])
+    tangents = shapely.Polygon([arc.vertex, on_arc[0], *corners, on_arc[-1]])
+    return chords, tangents, float(step.max())
+
+
+def _along(arc: Arc, direction: float) -> float | None:
+    """Angle of a direction from the start of the arc, or None if the arc does not contain it."""
+    t = (direction - arc.start) % (2.0 * math.pi)
+    return t if 1e-9 < t < arc.turn - 1e-9 else None
+
+
+def _exterior(parts: list[shapely.Polygon], outline: Outline, radius: float) -> tuple[Outline, int]:
+    """Outer ring of the union and the number of holes.
+
+    The union is noded on a grid far below MERGE_VERTEX: ends that belong together but differ in
+    the last digit become one point.
+    """
+    grid = 1e-3 * MERGE_VERTEX * (outline.diameter + radius)
+    grown = shapely.union_all(parts, grid_size=grid)
+    if not isinstance(grown, shapely.Polygon):
+        raise GraspError(f"growing the outline by {radius} gives a {grown.geom_type}")
+    ring = shapely.get_coordinates(grown.exterior)[:-1]
+    holes = [h for h in grown.interiors if shapely.Polygon(h).area > grid * outline.diameter]
+    return Outline(ring), len(holes)
+
+
+def directions_on_arcs(
+    outline: Outline, radius: float, contacts: FloatArray
+) -> dict[int, tuple[float, ...]]:
+    """Arc number -> directions of the contacts (finger centres) that lie on it."""
+    size = outline.diameter
+    found: dict[int, tuple[float, ...]] = {}
+    for number, arc in enumerate(arcs(outline)):
+        for point in contacts:
+            x, y = point - arc.vertex
+            if abs(math.hypot(x, y) - radius) <= CONTACT_OFF * size:
+                direction = math.atan2(y, x)
+                if _along(arc, direction) is not None:
+                    found[number] = (*found.get(number, ()), direction)
+    return found
+
+
+def check_disc_contacts(outline: Outline, radius: float, contacts: FloatArray) -> None:
+    """Finger centres must lie at the radius from the outline, apart, and outside closed pockets.
+
+    Raises
+    ------
+    GraspError:
+        Says which finger, what was found and what is allowed.
+    """
+    reach = CONTACT_OFF * outline.diameter
+    points = shapely.points(contacts)
+    gap = shapely.distance(points, outline.polygon.exterior)
+    inside = shapely.contains_properly(outline.polygon, points)
+    for k in range(3):
+        found = -float(gap[k]) if inside[k] else float(gap[k])
+        if abs(found - radius) > reach:
+            raise GraspError(
+                f"contact {k + 1} is {found:.6g} from the outline; the finger radius {radius:.6g} "
+                f"within {reach:.3g} (1e-6 of the diameter) is needed"
+            )
+        other = (k + 1) % 3
+        side = float(np.hypot(*(contacts[other] - contacts[k])))
+        if side < 2.0 * radius * (1.0 - 1e-9):
+            raise GraspError(
+                f"fingers {k + 1} and {other + 1} overlap: their centres are {side:.6g} apart, "
+                f"at least 2 x {radius:.6g} is needed"
+            )
+    grown = offsets(outline, radius, 16).inner
+    swallowed = shapely.distance(points, grown.polygon.exterior)
+    for k in range(3):
+        if swallowed[k] > 0.01 * radius + reach:
+            raise GraspError(
+                f"contact {k + 1} lies in a pocket that a finger of radius {radius:.6g} "
+                "cannot leave or enter"
+            )

@@ -1,0 +1,151 @@
+"""Local minima of sigma for disc fingers on the true curve, arcs and corners with arcs included.
+
+A polygon gives the neighbourhood; the minimum itself is a small problem in (d, w): the finger
+centres at distance >= radius from the edges and vertices they touch. Our own.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize
+
+from icage.arrays import FloatArray
+from icage.hand import HandShape
+from icage.outline import Outline
+
+_NEAR = 3e-3
+"""[diameter] Features of the outline this close to being touched take part."""
+
+
+class Feature(NamedTuple):
+    """Finger ``finger`` (0..2) keeps ``radius`` from a line (normal given) or from a vertex."""
+
+    finger: int
+    point: FloatArray
+    normal: FloatArray | None
+
+
+def features_near(outline: Outline, radius: float, contacts: FloatArray) -> list[Feature]:
+    """Edges and convex vertices that the three finger centres touch or nearly touch."""
+    a = outline.vertices
+    side = np.roll(a, -1, axis=0) - a
+    length = np.hypot(side[:, 0], side[:, 1])
+    outward = np.column_stack([side[:, 1], -side[:, 0]]) / length[:, None]
+    reach = _NEAR * outline.diameter
+    found: list[Feature] = []
+    for k, point in enumerate(contacts):
+        t = ((point - a) * side).sum(axis=1) / length
+        gap = ((point - a) * outward).sum(axis=1)
+        edge = (t >= -reach) & (t <= length + reach) & (np.abs(gap - radius) <= reach)
+        # an edge counts as a line only where the finger faces it; beyond its ends its vertex does
+        faces = edge & (t >= -1e-9 * outline.diameter) & (t <= length + 1e-9 * outline.diameter)
+        found += [Feature(k, a[q], outward[q]) for q in np.flatnonzero(faces)]
+        far = np.hypot(*(point - a).T)
+        beyond_before = np.roll(t > np.roll(length, 0) - reach, 1)
+        corner = (np.abs(far - radius) <= reach) & (t <= reach) & beyond_before
+        found += [Feature(k, a[q], None) for q in np.flatnonzero(corner)]
+    return found
+
+
+def refine(
+    outline: Outline, hand: HandShape, radius: float, contacts: FloatArray
+) -> FloatArray | None:
+    """Contacts (3, 2) of the local minimum on the true curve next to the given ones, or None.
+
+    Sequential quadratic programming, then Newton steps on the conditions of the active features.
+    """
+    size = outline.diameter
+    features = features_near(outline, radius, contacts)
+    if len({f.finger for f in features}) < 2:
+        return None
+    origin = contacts.mean(axis=0)
+    side = contacts[1] - contacts[0]
+    start = np.concatenate([contacts[0] - origin, side]) / size
+    system = _System(features, hand, radius / size, origin, size)
+    answer = minimize(
+        lambda v: 0.5 * float(v[2:] @ v[2:]), start, jac=lambda v: np.array([0.0, 0.0, v[2], v[3]]),
+        method="SLSQP", options={"ftol": 1e-15, "maxiter": 200},
+        constraints={"type": "ineq", "fun": system.gaps, "jac": system.slopes},
+    )  # fmt: skip
+    point = system.polished(np.asarray(answer.x))
+    if point is None or float(system.gaps(point).min()) < -1e-9:
+        return None
+    f = (point[0] + 1j * point[1]) + (point[2] + 1j * point[3]) * hand.z
+    return np.column_stack([f.real, f.imag]) * size + origin
+
+
+class _System:
+    """Gaps of the features as functions of v = (d_x, d_y, w_x, w_y) / size about an origin."""
+
+    def __init__(
+        self, features: list[Feature], hand: HandShape, radius: float, origin: FloatArray,
+        size: float,
+    ) -> None:  # fmt: skip
+        self._radius = radius
+        self._features = features
+        self._points = np.array([(f.point - origin) / size for f in features])
+        # finger k = M_k v
+        self._maps = np.array(
+            [
+                [[1.0, 0.0, z.real, -z.imag], [0.0, 1.0, z.imag, z.real]]
+                for z in (hand.z[f.finger] for f in features)
+            ]
+        )
+
+    def _normals(self, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        off = self._maps @ v - self._points
+        far = np.hypot(off[:, 0], off[:, 1])
+        normals = np.array(
+            [
+                o / r if f.normal is None else f.normal
+                for f, o, r in zip(self._features, off, far, strict=True)
+            ]
+        )
+        return normals, (normals * off).sum(axis=1) - self._radius
+
+    def gaps(self, v: FloatArray) -> FloatArray:
+        """Distance of every feature minus the radius, over the size."""
+        return self._normals(v)[1]
+
+    def slopes(self, v: FloatArray) -> FloatArray:
+        """Derivative of the gaps, (features, 4)."""
+        return np.einsum("ki,kij->kj", self._normals(v)[0], self._maps)
+
+    def _curvature(self, v: FloatArray, force: FloatArray, rows: FloatArray) -> FloatArray:
+        """Hessian of 1/2 |w|^2 - sum force x gap over the active features, (4, 4)."""
+        hessian = np.diag([0.0, 0.0, 1.0, 1.0])
+        normals, gaps = self._normals(v)
+        for k, lam in zip(rows, force, strict=True):
+            if self._features[int(k)].normal is None:
+                n = normals[int(k)]
+                flat = (np.eye(2) - np.outer(n, n)) / (gaps[int(k)] + self._radius)
+                hessian -= lam * self._maps[int(k)].T @ flat @ self._maps[int(k)]
+        return hessian
+
+    def polished(self, v: FloatArray) -> FloatArray | None:
+        """Newton on stationarity and contact of the features that carry or nearly carry force."""
+        active = np.flatnonzero(self.gaps(v) < 1e-7)
+        if not len(active):
+            return None
+        slope = self.slopes(v)[active]
+        gradient = np.array([0.0, 0.0, v[2], v[3]])
+        force = np.linalg.lstsq(slope.T, gradient, rcond=1e-9)[0]
+        for _ in range(8):
+            slope = self.slopes(v)[active]
+            residual = np.concatenate(
+                [np.array([0.0, 0.0, v[2], v[3]]) - slope.T @ force, self.gaps(v)[active]]
+            )
+            n = len(active)
+            matrix = np.block(
+                [[self._curvature(v, force, active), -slope.T], [slope, np.zeros((n, n))]]
+            )
+            step = np.linalg.lstsq(matrix, -residual, rcond=1e-12)[0]
+            if not np.isfinite(step).all() or float(np.abs(step[:4]).max()) > 1e-2:
+                return None
+            v = v + step[:4]
+            force = force + step[4:]
+        gradient = np.array([0.0, 0.0, v[2], v[3]])
+        off = gradient - self.slopes(v)[active].T @ force
+        return v if float(np.abs(off).max()) < 1e-9 else None
