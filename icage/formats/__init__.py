@@ -1,0 +1,1 @@
+"""What users bring: drawings, case files, placements. One file per format."""

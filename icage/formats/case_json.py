@@ -1,0 +1,146 @@
+"""The case file: an outline, a finger radius, a target grasp. Format ``icage-case/1``."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from icage.arrays import FloatArray, read_only
+from icage.errors import CaseError, FormatError, InputError
+from icage.formats.contacts import check_contacts
+from icage.formats.files import read_bytes
+from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
+from icage.formats.svg import read_svg
+from icage.outline import MAX_VERTICES, Outline
+
+FORMAT: Final = "icage-case/1"
+
+MAX_BYTES: Final = 10_000_000
+"""Largest case file read."""
+
+MAX_NAME: Final = 100
+"""Characters of a case's name."""
+
+Unit = Literal["m", "mm", "cm"]
+UNITS: Final = ("m", "mm", "cm")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Object:
+    """An outline with its name and unit, and the radius of the fingers meant for it."""
+
+    name: str
+    unit: Unit
+    outline: Outline
+    finger_radius: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """An object and a target grasp: finger centres (3, 2), fingers 1, 2, 3, counterclockwise."""
+
+    name: str
+    unit: Unit
+    outline: Outline
+    finger_radius: float
+    contacts: FloatArray
+
+    def __post_init__(self) -> None:
+        contacts = np.array(self.contacts, dtype=np.float64)
+        check_contacts(self.outline, contacts, self.finger_radius)
+        object.__setattr__(self, "contacts", read_only(contacts))
+
+
+def read_case(path: Path) -> Case:
+    """The case in a JSON file.
+
+    Raises
+    ------
+    InputError:
+        Whatever is wrong with the file, in one line that begins with its path.
+    """
+    with _told_with(str(path)):
+        data = parse_json(read_bytes(path, MAX_BYTES, "a case file"), "the file")
+        return parse_case(data, path.parent)
+
+
+def parse_case(data: object, folder: Path) -> Case:
+    """The case in parsed JSON; an outline given as a file is looked for in ``folder``."""
+    case = an_object(data, "the case")
+    found = parse_object(case, folder)
+    grasp = an_object(required(case, "grasp", "the case"), "grasp")
+    contacts = points(required(grasp, "contacts", "grasp"), "grasp.contacts", most=3)
+    if len(contacts) != 3:
+        raise CaseError(f"grasp.contacts has {len(contacts)} points; 3 are needed")
+    with _told_with("grasp.contacts"):
+        return Case(found.name, found.unit, found.outline, found.finger_radius, contacts)
+
+
+def read_object(path: Path) -> Object:
+    """The object in a case file; its grasp, if it has one, is not looked at."""
+    with _told_with(str(path)):
+        data = parse_json(read_bytes(path, MAX_BYTES, "a case file"), "the file")
+        return parse_object(an_object(data, "the case"), path.parent)
+
+
+def parse_object(case: dict[str, Any], folder: Path) -> Object:
+    """Everything of a case but the grasp."""
+    if required(case, "format", "the case") != FORMAT:
+        raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed")
+    name = required(case, "name", "the case")
+    if not isinstance(name, str) or not 0 < len(name) <= MAX_NAME or not name.isprintable():
+        raise CaseError(
+            f"name is {describe(name)}; a printable string of 1 to {MAX_NAME} characters is needed"
+        )
+    unit = parse_unit(case.get("unit", "m"))
+    outline = _parse_outline(an_object(required(case, "outline", "the case"), "outline"), folder)
+    finger_radius = a_number(case.get("finger_radius", 0.0), "finger_radius")
+    if finger_radius < 0.0:
+        raise CaseError(f"finger_radius is {finger_radius:g}; 0 or more is needed")
+    return Object(name, unit, outline, finger_radius)
+
+
+def parse_unit(value: object) -> Unit:
+    """One of the units a case may have."""
+    if value not in UNITS:
+        raise CaseError(f"unit is {describe(value)}; one of {', '.join(UNITS)} is needed")
+    return value
+
+
+def _parse_outline(data: dict[str, Any], folder: Path) -> Outline:
+    if ("vertices" in data) == ("file" in data):
+        have = "both" if "vertices" in data else "neither"
+        raise CaseError(f"outline has {have} of the keys 'vertices' and 'file'; one is needed")
+    if "vertices" in data:
+        vertices = points(data["vertices"], "outline.vertices", MAX_VERTICES)
+        with _told_with("outline.vertices"):
+            return Outline(vertices)
+    file = data["file"]
+    if not isinstance(file, str) or not file or not file.isprintable():
+        raise CaseError(f"outline.file is {describe(file)}; the path of an SVG file is needed")
+    if not file.lower().endswith(".svg"):
+        raise CaseError(f"outline.file is {describe(file)}; a drawing *.svg is needed")
+    width = a_number(required(data, "width", "outline"), "outline.width")
+    tolerance = data.get("tolerance")
+    if tolerance is not None or "tolerance" in data:
+        tolerance = a_number(tolerance, "outline.tolerance")
+    with _told_with("outline"):
+        return read_svg(folder / file, width, tolerance)
+
+
+@contextmanager
+def _told_with(place: str) -> Generator[None]:
+    """Errors of the block say where they arose, unless they do."""
+    try:
+        yield
+    except InputError as error:
+        message = str(error)
+        if place in message:
+            raise
+        kind = CaseError if isinstance(error, FormatError) else type(error)
+        raise kind(f"{place}: {message}") from error

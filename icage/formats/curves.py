@@ -1,0 +1,134 @@
+"""Plane curves as polylines that stay within a given distance.
+
+A chord over a parameter step h leaves its curve by at most h^2 max|p''| / 8, at equal parameters;
+so the distance holds in both directions. The points where x or y turns are kept, so that curve and
+polyline have the same bounding box.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from icage.errors import FormatError
+
+MAX_CHORDS = 20_000
+"""Of one curve; a circle flattened to 1e-8 of its size has 11,000."""
+
+
+class Curve(Protocol):
+    """A smooth curve over t in [0, 1]."""
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Points (k, 2) at parameters (k,)."""
+        ...
+
+    def bend(self) -> float:
+        """An upper bound of |p''(t)|."""
+        ...
+
+    def turns(self) -> list[float]:
+        """Parameters strictly inside (0, 1) where x or y may have an extremum."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bezier:
+    """A Bezier curve of degree 1, 2 or 3 by its control points (degree + 1, 2)."""
+
+    control: FloatArray
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Points (k, 2), by de Casteljau's steps."""
+        rows = [np.broadcast_to(point, (len(t), 2)) for point in self.control]
+        while len(rows) > 1:
+            rows = [a + t[:, None] * (b - a) for a, b in pairwise(rows)]
+        return np.array(rows[0])
+
+    def bend(self) -> float:
+        """Degree (degree - 1) times the largest second difference of the control points."""
+        degree = len(self.control) - 1
+        if degree < 2:
+            return 0.0
+        second = np.diff(self.control, 2, axis=0)
+        return degree * (degree - 1) * float(np.hypot(second[:, 0], second[:, 1]).max())
+
+    def turns(self) -> list[float]:
+        """Zeros of x' and y'."""
+        if len(self.control) < 3:
+            return []
+        first = np.diff(self.control, axis=0)
+        zeros: list[float] = []
+        for column in first.T:
+            if len(column) == 2:
+                powers = [column[1] - column[0], column[0]]
+            else:
+                a, b, c = column
+                powers = [a - 2.0 * b + c, 2.0 * (b - a), a]
+            scale = max(abs(power) for power in powers)
+            if scale > 0.0:
+                roots = np.roots(np.array(powers) / scale)
+                zeros += [float(root.real) for root in roots if abs(root.imag) < 1e-6]
+        return [zero for zero in zeros if 0.0 < zero < 1.0]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EllipseArc:
+    """p = centre + cos(u) a + sin(u) b, u = start + t sweep: an affine image of a circle's arc."""
+
+    centre: FloatArray
+    a: FloatArray
+    b: FloatArray
+    start: float
+    sweep: float
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Points (k, 2)."""
+        u = self.start + t * self.sweep
+        return self.centre + np.cos(u)[:, None] * self.a + np.sin(u)[:, None] * self.b
+
+    def bend(self) -> float:
+        """sweep^2 times a bound of the longer half axis."""
+        return self.sweep**2 * math.hypot(*self.a.tolist(), *self.b.tolist())
+
+    def turns(self) -> list[float]:
+        """Where -sin(u) a + cos(u) b has a zero coordinate."""
+        if self.sweep == 0.0:
+            return []
+        zeros: list[float] = []
+        for a, b in zip(self.a.tolist(), self.b.tolist(), strict=True):
+            u = math.atan2(b, a)
+            first = math.ceil((min(self.start, self.start + self.sweep) - u) / math.pi)
+            zeros += [(u + (first + k) * math.pi - self.start) / self.sweep for k in range(3)]
+        return [zero for zero in zeros if 0.0 < zero < 1.0]
+
+
+def flatten(curve: Curve, within: float) -> FloatArray:
+    """Points (k, 2) of a polyline at most ``within`` from the curve, both ends included.
+
+    Raises
+    ------
+    FormatError:
+        The curve would need more than ``MAX_CHORDS`` chords.
+
+    Examples
+    --------
+    >>> arc = EllipseArc(np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0, 2 * math.pi)
+    >>> middles = np.diff(flatten(arc, 1e-3), axis=0) / 2 + flatten(arc, 1e-3)[:-1]
+    >>> bool(1 - np.hypot(*middles.T).min() <= 1e-3)
+    True
+    """
+    bend = curve.bend()
+    chords = math.ceil(math.sqrt(bend / (8.0 * within))) if bend > 0.0 else 1
+    if chords > MAX_CHORDS:
+        raise FormatError(
+            f"a curve would need {chords:.3g} chords, at most {MAX_CHORDS} are allowed; "
+            "give a larger tolerance"
+        )
+    t = np.union1d(np.linspace(0.0, 1.0, max(chords, 1) + 1), curve.turns())
+    return curve.at(t)

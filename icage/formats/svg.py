@@ -1,0 +1,139 @@
+"""Outline of an SVG drawing: exterior ring of the union of its filled shapes.
+
+Strokes, text and images paint no area here. x to the right, y upwards (SVG's y negated); the
+drawing is scaled so that the longer side of its bounding box is the width asked for, and moved so
+that the box's lower left corner is (0, 0).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import shapely
+
+from icage.arrays import FloatArray
+from icage.errors import FormatError
+from icage.formats.curves import Curve, flatten
+from icage.formats.files import read_bytes
+from icage.formats.fill import filled
+from icage.formats.simplify import simplified
+from icage.formats.svg_shapes import Shape, drawn_shapes
+from icage.formats.svg_tree import MAX_BYTES, drawable
+from icage.outline import Outline
+
+DEFAULT_TOLERANCE: Final = 1e-3
+"""[width] Tolerance where none is given. [contract]"""
+
+TOLERANCE_RANGE: Final = (1e-6, 0.1)
+"""[width] Finer is beyond any drawing, coarser is no outline of it."""
+
+MAX_POINTS: Final = 200_000
+"""Vertices of the flattened drawing."""
+
+_FLATTEN: Final = 0.02
+_SIMPLIFY: Final = 0.95
+"""[tolerance] Shares of flattening (small, since it also moves the crossings of shapes) and of
+simplification."""
+
+
+def read_svg(path: Path, width: float, tolerance: float | None = None) -> Outline:
+    """Outline of the drawing in a file, in the unit of ``width``.
+
+    Parameters
+    ----------
+    path:
+        The SVG file.
+    width:
+        [unit] Longer side of the outline's bounding box.
+    tolerance:
+        [unit] Bound of the distance between drawing and outline, flattening and simplification
+        together; 0.1 % of the width if None.
+
+    Raises
+    ------
+    FormatError:
+        Not a readable SVG drawing, no fill in it, several separate parts, or numbers out of range.
+    OutlineError:
+        The outline has more vertices than an ``Outline`` may have.
+    """
+    if not (math.isfinite(width) and width > 0.0):
+        raise FormatError(f"width is {width:g}; a finite number above 0 is needed")
+    relative = DEFAULT_TOLERANCE if tolerance is None else tolerance / width
+    low, high = TOLERANCE_RANGE
+    if not low * (1 - 1e-9) <= relative <= high * (1 + 1e-9):
+        raise FormatError(
+            f"tolerance is {relative * width:g}; {low * width:g} to {high * width:g} is allowed "
+            f"({low:g} to {high:g} of the width)"
+        )
+    try:
+        ring = _silhouette(read_bytes(path, MAX_BYTES, "an SVG drawing"), relative)
+    except FormatError as error:
+        raise FormatError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
+    low_corner = ring.min(axis=0)
+    size = ring.max(axis=0) - low_corner
+    return Outline((ring - low_corner) * (width / size.max()))
+
+
+def _silhouette(content: bytes, relative: float) -> FloatArray:
+    """Simplified exterior ring in drawing coordinates, y upwards."""
+    shapes = list(drawn_shapes(drawable(content)))
+    points = [curve.at(_ends(curve)) for _, rings in shapes for ring in rings for curve in ring]
+    if not points:
+        raise FormatError("nothing in the drawing is filled; a filled shape is needed")
+    corners = np.vstack(points)
+    if not np.isfinite(corners).all() or np.abs(corners).max() > 1e12:
+        raise FormatError("the drawing has coordinates that are not finite or beyond 1e12")
+    region = _one_part(shapes, relative * float(np.ptp(corners, axis=0).max()))
+    # A shape without area may have reached further than the silhouette does.
+    region = _one_part(shapes, relative * _size(region))
+    ring = shapely.get_coordinates(region.exterior)[:-1]
+    return simplified(ring, _SIMPLIFY * relative * _size(region))
+
+
+def _one_part(shapes: Sequence[Shape], tolerance: float) -> shapely.Polygon:
+    """Union of all fills; parts smaller than the tolerance are dust."""
+    if tolerance <= 0.0:
+        raise FormatError("the filled shapes have no area")
+    regions: list[shapely.Geometry] = []
+    total = 0
+    for rule, rings in shapes:
+        flat = [
+            np.vstack([flatten(curve, _FLATTEN * tolerance)[:-1] for curve in ring])
+            for ring in rings
+        ]
+        total += sum(len(ring) for ring in flat)
+        if total > MAX_POINTS:
+            raise FormatError(
+                f"the flattened drawing has more than {MAX_POINTS} points; give a larger tolerance"
+            )
+        regions.append(filled(flat, rule))
+    parts = [part for part in _polygons(shapely.union_all(regions)) if _size(part) > tolerance]
+    if not parts:
+        raise FormatError("the filled shapes have no area")
+    if len(parts) > 1:
+        areas = sorted((part.area for part in parts), reverse=True)
+        shares = ", ".join(f"{100 * area / sum(areas):.3g} %" for area in areas[:4])
+        raise FormatError(
+            f"the drawing has {len(parts)} separate filled parts (areas {shares}"
+            f"{', ...' if len(areas) > 4 else ''}); one connected silhouette is needed"
+        )
+    return shapely.Polygon(parts[0].exterior)
+
+
+def _polygons(region: shapely.Geometry) -> list[shapely.Polygon]:
+    parts = shapely.get_parts(region)
+    return [part for part in parts if isinstance(part, shapely.Polygon) and not part.is_empty]
+
+
+def _size(part: shapely.Polygon) -> float:
+    """Longer side of the bounding box."""
+    x_low, y_low, x_high, y_high = part.bounds
+    return max(x_high - x_low, y_high - y_low)
+
+
+def _ends(curve: Curve) -> FloatArray:
+    return np.array([0.0, *curve.turns(), 1.0])
