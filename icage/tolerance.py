@@ -50,3 +50,6 @@ SIGMA_MAX_GAP: Final = 1e-4
 
 SIGMA_FIRST_SPREAD: Final = 1e-3
 """[1] Disc fingers: sigma_first counts as converged if all resolutions agree to this. [contract]"""
+
+REGION_LEVEL: Final = 1e-9
+"""[1] Regions are drawn this far (relative) below their level: at it the puncture opens."""

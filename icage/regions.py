@@ -1,0 +1,149 @@
+"""The caging regions of the fingers: where each may be below a level. [Bunis2018, Sec. III-B, VI]
+
+Every configuration of the target's component below the level puts finger i into its region, and
+every point of the region is reached by one. (That fingers standing each in its own region, with
+sigma below the level, always cage is the paper's condition; the joint query is the authority.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+
+from icage.arrays import FloatArray, IntArray
+from icage.cage import Cage, CageWork
+from icage.errors import GeometryError, InputError
+from icage.kernels.region import all_sandwiches
+from icage.solver import Configuration, Terrain
+from icage.tolerance import REGION_LEVEL
+
+_ROUGH = 0.02
+_REFINEMENTS = 6
+_GRID = 1e-9
+"""[diameter] Neighbouring cells meet on a common edge: unions are noded on this grid."""
+
+
+@dataclass(frozen=True, slots=True)
+class FingerRegion:
+    """The caging region of one finger (1..3) at a level, between two certified bounds.
+
+    ``area_gap`` = (area of the outer bound - area of the inner) / area of the outer.
+    """
+
+    finger: int
+    level_name: str
+    level: float
+    bound: Literal["inner", "outer"]
+    area_gap: float
+    geometry: shapely.MultiPolygon
+
+
+def caging_regions(
+    cage: Cage, level: float | None = None, gap: float = 1e-3
+) -> tuple[FingerRegion, ...]:
+    """Inner and outer bounds of the regions of the three fingers (six entries, inner first).
+
+    Parameters
+    ----------
+    level:
+        sigma below which the hand stays, [unit]; None for sigma_max (everything, for a hand that
+        never escapes).
+    gap:
+        Largest relative difference of area between the two bounds.
+
+    Raises
+    ------
+    InputError:
+        The level is not between sigma_0 and sigma_max, or the gap not in (0, 1).
+    """
+    if not 0.0 < gap < 1.0:
+        raise InputError(f"area gap {gap}; a number between 0 and 1 is needed")
+    work = cage.work
+    if work is None:
+        return ()
+    top = cage.sigma_max if cage.sigma_max is not None else work.search.terrain.cap
+    chosen = top if level is None else float(level)
+    if not cage.sigma_0 < chosen <= top:
+        raise InputError(f"level {chosen}; above sigma_0 = {cage.sigma_0}, up to {top} is allowed")
+    name = _level_name(cage, chosen)
+    below = min(chosen, work.search.level) * (1.0 - REGION_LEVEL)
+    regions: list[FingerRegion] = []
+    for finger in range(3):
+        inner, outer, found = _bounds(work, finger, below, gap)
+        regions.append(FingerRegion(finger + 1, name, chosen, "inner", found, inner))
+        regions.append(FingerRegion(finger + 1, name, chosen, "outer", found, outer))
+    return tuple(sorted(regions, key=lambda r: (r.bound != "inner", r.finger)))
+
+
+def _level_name(cage: Cage, level: float) -> str:
+    if cage.sigma_max is None and level >= (cage.sigma_largest or np.inf):
+        return "all"
+    if level == cage.sigma_max:
+        return "sigma_max"
+    return "sigma_first" if level == cage.sigma_first else "sigma"
+
+
+def _bounds(
+    work: CageWork, finger: int, level: float, gap: float
+) -> tuple[shapely.MultiPolygon, shapely.MultiPolygon, float]:
+    """Inner and outer region of a finger (0..2), refined until their areas agree."""
+    terrain = work.search.terrain
+    nodes, points = _cells_and_points(work, finger, level)
+    size = terrain.pieces.diameter
+    enough = _ROUGH * size**2
+    inner = outer = shapely.MultiPolygon()
+    found = 1.0
+    for attempt in range(_REFINEMENTS + 1):
+        ins, in_counts, outs, out_counts = all_sandwiches(
+            terrain.pieces, terrain.z, finger, nodes, points, level, enough, 1e-7 * size
+        )
+        inner = _union(terrain, ins, in_counts)
+        outer = _union(terrain, outs, out_counts)
+        found = 1.0 - inner.area / outer.area if outer.area > 0.0 else 0.0
+        if found <= gap:
+            break
+        target = gap * outer.area / max(8, len(out_counts)) ** 0.5
+        enough = min(0.1 * enough, 0.5 * target * 10.0 ** -max(0, attempt - 1))
+    else:
+        raise GeometryError(f"area gap {found:.2g} of finger {finger + 1} above {gap:.2g}")
+    return inner, outer, max(0.0, found)
+
+
+def _cells_and_points(work: CageWork, finger: int, level: float) -> tuple[IntArray, FloatArray]:
+    """Cells of the target's component below the level, and a finger position in each."""
+    found, tree = work.search, work.tree
+    inside = len(tree.birth)
+    use = np.flatnonzero((found.node_level[:inside] <= level) & (tree.birth[:, 0] < level))
+    cells = np.ascontiguousarray(found.nodes[use, :3])
+    points = np.array([_least_point(work, int(k), finger) for k in use])
+    return cells, points.reshape(-1, 2)
+
+
+def _least_point(work: CageWork, node: int, finger: int) -> tuple[float, float]:
+    """Where a finger is at the least sigma of a cell."""
+    _, wx, wy = work.tree.birth[node]
+    at, slot = work.tree.birth_at[node]
+    terrain = work.search.terrain
+    a, b = terrain.on_edge(work.search.nodes[node, :3], int(at), int(slot), wx, wy)
+    f = terrain.fingers(Configuration(0.5 * (a.d + b.d), a.w))[finger]
+    return float(f.real), float(f.imag)
+
+
+def _union(terrain: Terrain, corners: FloatArray, counts: IntArray) -> shapely.MultiPolygon:
+    """Union of convex polygons in the object's frame, outer rings counterclockwise."""
+    counts_list = counts.tolist()
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    rings = [
+        shapely.Polygon(corners[a : a + n])
+        for a, n in zip(starts[:-1].tolist(), counts_list, strict=True)
+        if n >= 3
+    ]
+    grid = _GRID * terrain.pieces.diameter
+    united = shapely.union_all(rings, grid_size=grid) if rings else shapely.MultiPolygon()
+    parts = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
+    moved = shapely.transform(shapely.MultiPolygon(parts), lambda xy: xy + terrain.origin)
+    oriented = [shapely.orient_polygons(p) for p in shapely.get_parts(moved)]
+    return shapely.MultiPolygon(oriented)
