@@ -1,1 +1,38 @@
 """Data of the shipped objects and of the hand, and the one loader that finds it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+OBJECTS = Path(__file__).resolve().parent / "objects"
+HAND = Path(__file__).resolve().parent / "hand"
+
+
+def object_names() -> tuple[str, ...]:
+    """Names of the shipped objects.
+
+    >>> object_names()
+    ('pliers', 'saw', 'wrench')
+    """
+    return tuple(sorted(file.parent.name for file in OBJECTS.glob("*/outline.json")))
+
+
+def outline_path(name: str) -> Path:
+    """Case file without a grasp: the outline of a shipped object and the command that made it."""
+    return _folder(name) / "outline.json"
+
+
+def case_paths(name: str) -> tuple[Path, ...]:
+    """Case files of a shipped object's documented grasps, in the order of its README."""
+    return tuple(sorted((_folder(name) / "cases").glob("*.json")))
+
+
+def case_path(name: str) -> Path:
+    """Case file of a shipped object's first grasp."""
+    return case_paths(name)[0]
+
+
+def _folder(name: str) -> Path:
+    if name not in object_names():
+        raise KeyError(f"no shipped object {name!r}; there are {', '.join(object_names())}")
+    return OBJECTS / name

@@ -1,0 +1,91 @@
+"""The command line: ``icage COMMAND ...``. Its exit codes are a promise.
+
+0: the question was answered. 2: bad input or wrong options, one line on standard error, nothing
+written. 1: a check that ran and failed, or our fault. 130: interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import pkgutil
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any, NoReturn
+
+import experiments.commands
+import icage
+from icage.errors import InputError
+
+_LONGEST = 800
+"""Characters of an error line; a file name may be longer than anyone reads."""
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse whose mistakes are input errors like any other, without abbreviations."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        kwargs.setdefault("allow_abbrev", False)
+        super().__init__(*args, **kwargs)
+
+    def error(self, message: str) -> NoReturn:
+        """Raise what argparse would print."""
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> Parser:
+    """The parser of all commands in ``experiments.commands``."""
+    top = Parser(
+        prog="icage",
+        description="How far may a three-finger hand open before the object inside can escape?",
+        epilog="A shipped object's name (pliers, saw, wrench) may stand wherever a CASE does.",
+    )
+    top.add_argument("--version", action="version", version=f"icage {icage.__version__}")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for module in pkgutil.iter_modules(experiments.commands.__path__):
+        command = import_module(f"experiments.commands.{module.name}")
+        command.add_parser(commands)
+        commands.choices[module.name].set_defaults(run=command.run)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        args = parser().parse_args(arguments)
+        code: int = args.run(args)
+        sys.stdout.flush()
+    except InputError as error:
+        _say(str(error))
+        return 2
+    except KeyboardInterrupt:
+        _say("interrupted")
+        return 130
+    except BrokenPipeError:
+        # The reader went away; keep the interpreter from complaining while it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except Exception as error:
+        if os.environ.get("ICAGE_DEBUG"):
+            raise
+        reason = f"{type(error).__name__}: {error}"
+        _say(f"internal: {reason} (our fault; ICAGE_DEBUG=1 shows where)")
+        return 1
+    return code
+
+
+def _say(message: str) -> None:
+    """One line on standard error, whatever the message holds."""
+    line = " ".join(message.split())
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
+    if len(line) > _LONGEST:
+        line = line[: _LONGEST - 3] + "..."
+    print(f"icage: error: {line}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

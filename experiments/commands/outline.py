@@ -1,0 +1,60 @@
+"""``icage outline DRAWING``: the polygon of a drawing, as a case file that awaits its grasp."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from experiments.options import UNITS, add_json, check_output, positive
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    parser = subparsers.add_parser(
+        "outline",
+        help="the polygon of an SVG drawing",
+        description="Turn an SVG drawing into a polygon with a stated tolerance; add a grasp to "
+        "the JSON and it is a case file.",
+    )
+    parser.add_argument("drawing", metavar="DRAWING", help="SVG file")
+    parser.add_argument(
+        "--width", type=positive, required=True, help="longer side of the bounding box, in UNIT"
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=positive,
+        help="largest distance between drawing and polygon, in UNIT (0.1 %% of the width)",
+    )
+    parser.add_argument("--unit", choices=UNITS, default="m", help="m, mm or cm (m)")
+    add_json(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read the drawing and write its vertices."""
+    from pathlib import Path
+
+    from experiments.json_out import write_json
+    from icage.formats.case_json import FORMAT
+    from icage.formats.svg import DEFAULT_TOLERANCE, read_svg
+
+    path = Path(args.drawing)
+    check_output("--json", args.json, path)
+    tolerance = DEFAULT_TOLERANCE * args.width if args.tolerance is None else args.tolerance
+    outline = read_svg(path, args.width, tolerance)
+    command = f"icage outline {path.name} --width {args.width:g} --tolerance {tolerance:g}"
+    document = {
+        "format": FORMAT,
+        "name": path.stem,
+        "unit": args.unit,
+        "outline": {"vertices": outline.vertices},
+        "made_by": f"{command} --unit {args.unit}",
+    }
+    if args.json is not None:
+        write_json(document, args.json)
+    if args.json != "-":
+        x, y = outline.vertices.max(axis=0)
+        print(
+            f"{path.stem}: {len(outline)} vertices, {x:.6g} x {y:.6g} {args.unit}, "
+            f"diameter {outline.diameter:.6g} {args.unit}"
+        )
+    return 0

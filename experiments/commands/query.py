@@ -1,0 +1,54 @@
+"""``icage query CASE PLACEMENTS``: is the object caged by a hand that stands there?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from experiments.options import add_json, check_output
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    parser = subparsers.add_parser(
+        "query",
+        help="whether placements of the hand cage the object",
+        description="Ask of every placement whether closing from there can end only in the "
+        "target, holds the object at all, or lets it escape.",
+    )
+    parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
+    parser.add_argument(
+        "placements",
+        metavar="PLACEMENTS",
+        help="CSV with the header x,y,theta,sigma (theta in radians), - for standard input",
+    )
+    add_json(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Plan, ask, write the answers in the order of the rows."""
+    import sys
+    from pathlib import Path
+
+    from experiments.inputs import case_file
+    from experiments.json_out import write_json
+    from experiments.query_json import query_document, query_summary
+    from icage.formats.case_json import read_case
+    from icage.formats.placements import read_placements, read_placements_stream
+    from icage.membership import query
+    from icage.planner import plan
+
+    path = case_file(args.case)
+    check_output("--json", args.json, path, Path(args.placements))
+    case = read_case(path)
+    if args.placements == "-":
+        placements = read_placements_stream(sys.stdin.buffer)
+    else:
+        placements = read_placements(Path(args.placements))
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    answers = query(cage, placements)
+    if args.json is not None:
+        write_json(query_document(answers), args.json)
+    if args.json != "-":
+        print("\n".join(query_summary(answers, case.unit)))
+    return 0

@@ -1,0 +1,60 @@
+"""What a user names on the command line: a case file, a drawing, or a shipped object."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from icage.errors import InputError
+from icage.formats.case_json import Case, Object, parse_unit, read_case, read_object
+from icage.formats.svg import read_svg
+from models import case_path, object_names, outline_path
+
+
+def case_file(text: str) -> Path:
+    """The file of a case given as a path or as a shipped object's name; it need not exist."""
+    if text in object_names() and not Path(text).is_file():
+        return case_path(text)
+    return _given(text)
+
+
+def find_case(text: str) -> Case:
+    """The case given as a path or as a shipped object's name."""
+    return read_case(case_file(text))
+
+
+def find_object(text: str, width: float | None = None, unit: str | None = None) -> Object:
+    """The object of a drawing, of a case file (with or without a grasp), or a shipped one.
+
+    Parameters
+    ----------
+    text:
+        A path ``*.svg`` or ``*.json``, or a shipped object's name.
+    width:
+        [unit] Longer side of its bounding box; needed for a drawing, for drawings only.
+    unit:
+        Of the width; "m" if None.
+    """
+    if text in object_names() and not Path(text).is_file():
+        path = outline_path(text)
+    else:
+        path = _given(text)
+    if path.suffix.lower() == ".svg":
+        if width is None:
+            raise InputError(f"{path} has no size of its own; --width is needed")
+        outline = read_svg(path, width)
+        return Object(path.stem, parse_unit("m" if unit is None else unit), outline, 0.0)
+    if width is not None or unit is not None:
+        raise InputError(f"--width and --unit are for drawings (*.svg); {path} has its own")
+    return read_object(path)
+
+
+def _given(text: str) -> Path:
+    path = Path(text)
+    try:
+        missing = not path.exists()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{text!r} cannot be a file: {error}") from error
+    if missing:
+        names = ", ".join(object_names())
+        raise InputError(f"{text!r} does not exist; shipped objects: {names}")
+    return path

@@ -1,0 +1,88 @@
+"""Option values that several commands take, and checks made before any work is done."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from pathlib import Path
+
+from icage.errors import InputError
+
+UNITS = ("m", "mm", "cm")
+
+
+def number(text: str) -> float:
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
+    return value
+
+
+def positive(text: str) -> float:
+    """A finite number above zero."""
+    value = number(text)
+    if value <= 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not above 0")
+    return value
+
+
+def not_negative(text: str) -> float:
+    """A finite number, zero or above."""
+    value = number(text)
+    if value < 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is below 0")
+    return value
+
+
+def count(text: str) -> int:
+    """A whole number from 1 to ten million."""
+    return _whole(text, 1, 10_000_000)
+
+
+def seed(text: str) -> int:
+    """A whole number that a random generator may start from."""
+    return _whole(text, 0, 2**63 - 1)
+
+
+def _whole(text: str, low: int, high: int) -> int:
+    if not (text.isascii() and text.isdigit() and len(text) <= 20 and low <= int(text) <= high):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")
+    return int(text)
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """``--json FILE|-``."""
+    parser.add_argument(
+        "--json",
+        metavar="FILE|-",
+        help="write the answer as JSON, - for standard output; otherwise a summary is printed",
+    )
+
+
+def check_output(option: str, target: str | None, *inputs: Path) -> None:
+    """Refuse an output file that cannot be made, or is one of the inputs, before any work.
+
+    Raises
+    ------
+    InputError:
+        Its folder is missing, it is a folder itself, it may not be written, or it is an input.
+    """
+    if target is None or target == "-":
+        return
+    path = Path(target)
+    try:
+        if path.is_dir():
+            raise InputError(f"{option} {target!r} is a folder; a file name is needed")
+        if not path.parent.is_dir():
+            raise InputError(f"{option} {target!r}: there is no folder {str(path.parent)!r}")
+        if not os.access(path.parent, os.W_OK):
+            raise InputError(f"{option} {target!r}: the folder may not be written to")
+        if any(path.exists() and given.exists() and path.samefile(given) for given in inputs):
+            raise InputError(f"{option} {target!r} would overwrite an input file")
+    except (OSError, ValueError) as error:
+        raise InputError(f"{option} {target!r} cannot be written: {error}") from error

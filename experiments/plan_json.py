@@ -1,0 +1,117 @@
+"""A cage as the document ``icage-plan/1``, and as a few lines to read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import shapely
+
+from icage.cage import Cage
+from icage.regions import FingerRegion
+
+
+def plan_document(
+    cage: Cage, regions: Sequence[FingerRegion], name: str, unit: str
+) -> dict[str, Any]:
+    """Everything about a cage that outlives this process; lengths in ``unit``."""
+    return {
+        "format": "icage-plan/1",
+        "name": name,
+        "unit": unit,
+        "diameter": cage.outline.diameter,
+        "finger_radius": cage.finger_radius,
+        "hand": {"phi_deg": cage.hand.phi_deg, "unit_fingers": cage.hand.unit_fingers},
+        "verdict": cage.verdict,
+        **({"why": cage.why} if cage.why is not None else {}),
+        "contacts": cage.contacts,
+        "adjusted_by": cage.adjusted_by,
+        "sigma_0": cage.sigma_0,
+        "sigma_first": cage.sigma_first,
+        "sigma_max": cage.sigma_max,
+        **(_brackets(cage) if cage.finger_radius > 0.0 else {}),
+        "punctures": [
+            {
+                "sigma": puncture.sigma,
+                "kind": puncture.kind,
+                "joins": puncture.joins,
+                "contacts": puncture.contacts,
+                "free_fingers": puncture.free_fingers,
+            }
+            for puncture in cage.punctures
+        ],
+        "escape_path": cage.escape_path,
+        "min_finger_gap": cage.min_finger_gap,
+        "grasps": [
+            {
+                "id": grasp.id,
+                "target": grasp.target,
+                "sigma_0": grasp.sigma,
+                "contacts": grasp.contacts,
+                "free_fingers": grasp.free_fingers,
+                **({"plateau": grasp.plateau} if grasp.plateau is not None else {}),
+            }
+            for grasp in cage.grasps
+        ],
+        "regions": [_region(region) for region in regions],
+        "warnings": cage.warnings,
+    }
+
+
+def _brackets(cage: Cage) -> dict[str, Any]:
+    return {
+        "sigma_first_upper": cage.sigma_first_upper,
+        "sigma_first_converged": cage.sigma_first_converged,
+        "sigma_max_upper": cage.sigma_max_upper,
+    }
+
+
+def _region(region: FingerRegion) -> dict[str, Any]:
+    return {
+        "finger": region.finger,
+        "level": region.level_name,
+        "bound": region.bound,
+        "area_gap": region.area_gap,
+        "polygons": [
+            {"outer": _ring(part.exterior, ccw=True), "holes": [_ring(h) for h in part.interiors]}
+            for part in region.geometry.geoms
+        ],
+    }
+
+
+def _ring(ring: shapely.LinearRing, ccw: bool = False) -> list[list[float]]:
+    """An open ring; outer ones counterclockwise, holes clockwise."""
+    points = shapely.get_coordinates(ring)[:-1]
+    return (points if ring.is_ccw == ccw else points[::-1]).tolist()
+
+
+def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
+    """Lines for a reader: what holds, up to which opening, and what comes after."""
+    phi_1, phi_2 = cage.hand.phi_deg
+    yield (
+        f"{name}: {len(cage.outline)} vertices, diameter {cage.outline.diameter:.6g} {unit}, "
+        f"hand phi = ({phi_1:.4g}, {phi_2:.4g}) deg, {_fingers(cage, unit)}"
+    )
+    yield f"verdict      {cage.verdict.replace('_', ' ')}{f': {cage.why}' if cage.why else ''}"
+    yield f"sigma_0      {cage.sigma_0:.9g} {unit}"
+    if cage.verdict != "not_a_cage":
+        yield _level("sigma_first", cage.sigma_first, cage, "closing ends only in the target")
+        yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")
+        for puncture in cage.punctures:
+            joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""
+            yield f"puncture     {puncture.sigma:.9g} {unit}, {puncture.kind}{joins}"
+        yield f"grasps       {len(cage.grasps)}, the target among them"
+    for warning in cage.warnings:
+        yield f"warning      {warning}"
+
+
+def _fingers(cage: Cage, unit: str) -> str:
+    if cage.finger_radius == 0.0:
+        return "point fingers"
+    return f"disc fingers of radius {cage.finger_radius:.6g} {unit}"
+
+
+def _level(name: str, sigma: float | None, cage: Cage, meaning: str) -> str:
+    if sigma is None:
+        return f"{name:<13}none: {meaning}, however far the hand opens"
+    return f"{name:<13}{sigma:.9g} ({sigma / cage.sigma_0:.6g} sigma_0): below it {meaning}"
