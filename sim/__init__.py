@@ -1,1 +1,4 @@
-"""The physics: everything that needs MuJoCo, nothing that plots."""
+"""MuJoCo side of icage: the hand, the free object, and what happens when the hand closes.
+
+Import from the modules. Nothing here plots, and nothing touches ``MUJOCO_GL`` at import.
+"""

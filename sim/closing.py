@@ -1,0 +1,83 @@
+"""Close the hand on the free object, one trial at a time: the plain loop.
+
+``sim.batch`` does the same for many trials on several threads, bit for bit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from icage.hand import Placement
+from sim.approach import approached
+from sim.contacts import finger_forces
+from sim.engine import MjData, mj, no_log
+from sim.outcome import ClosingOutcome, ClosingOutcomes
+from sim.scene import Scene
+from sim.watch import DIVERGED, Watch
+
+
+def close(scene: Scene, start: Placement) -> ClosingOutcome:
+    """Close from one placement until the hand is still, has shut, or time is up."""
+    placements = start.as_array()[None, :]
+    qpos = scene.start_positions(placements)
+    watch = Watch.over(scene, qpos)
+    data = data_at(scene, approached(scene, qpos)[0])
+    only = np.zeros(1, dtype=np.int64)
+    with no_log():
+        for _ in range(scene.config.max_steps):
+            mj.mj_step(scene.model, data)
+            watch.observe(only, data.qpos[None, :], data.qvel[None, :])
+            if any(warning.number for warning in data.warning):
+                watch.diverged(only)
+            if not len(watch.running):
+                break
+    return outcomes(scene, placements, watch, integration_state(scene, data)[None, :])[0]
+
+
+def data_at(scene: Scene, qpos: FloatArray) -> MjData:
+    """An MjData at rest at qpos (6,), the motor pulling."""
+    data = mj.MjData(scene.model)
+    data.qpos[:] = qpos
+    data.ctrl[:] = scene.closing_force
+    return data
+
+
+def integration_state(scene: Scene, data: MjData) -> FloatArray:
+    """Everything the next step depends on, as one row."""
+    signature = int(mj.mjtState.mjSTATE_INTEGRATION)
+    state = np.zeros(mj.mj_stateSize(scene.model, signature))
+    mj.mj_getState(scene.model, data, state, signature)
+    return state
+
+
+def outcomes(scene: Scene, start: FloatArray, watch: Watch, states: FloatArray) -> ClosingOutcomes:
+    """Read off the end of N closings from their integration states (N, nstate)."""
+    forces, contacts = _press(scene, watch.ending, states)
+    positions = np.array(states[:, 1:7])  # after the time
+    return ClosingOutcomes(
+        start=np.array(start),
+        end=scene.placements(positions),
+        ending=watch.ending.copy(),
+        steps=watch.steps.copy(),
+        penetration_max=watch.penetration_max.copy(),
+        penetration_rest=watch.penetration_rest.copy(),
+        shape_error_max=watch.shape_error_max.copy(),
+        sigma_rise_max=watch.sigma_rise_max.copy(),
+        finger_forces=forces,
+        contacts=contacts,
+    )
+
+
+def _press(scene: Scene, ending: IntArray, states: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Forces (N, 3), [drive_force], and contacts (N,) of the final states."""
+    forces = np.zeros((len(states), 3))
+    contacts = np.zeros(len(states), dtype=np.int64)
+    data = mj.MjData(scene.model)
+    signature = int(mj.mjtState.mjSTATE_INTEGRATION)
+    for i in np.flatnonzero(ending != DIVERGED).tolist():
+        mj.mj_setState(scene.model, data, states[i], signature)
+        mj.mj_forward(scene.model, data)
+        vectors, contacts[i] = finger_forces(scene.model, data)
+        forces[i] = np.hypot(vectors[:, 0], vectors[:, 1]) / scene.config.drive_force
+    return forces, contacts

@@ -1,0 +1,97 @@
+"""Settings of the simulation, in normalized units, each with its reason.
+
+Inside the engine every case looks alike: the object's diameter is 1, its mass is 1, time is in
+seconds of that small world. So a force is in [mass diameter / s^2] and a damping in [mass / s].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from icage.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class SimConfig:
+    """How the hand closes and when a closing counts as finished.
+
+    The motor's force is shared by the fingers in the ratio of their travel; ``drive_force`` is the
+    root of the sum of the squares of the three finger forces and ``finger_damping`` acts on every
+    finger alike, so that nothing depends on which finger is called finger 1.
+
+    Examples
+    --------
+    >>> SimConfig().free_speed
+    0.4
+    """
+
+    time_step: float = 1e-3
+    """[s] The deepest penetration on impact is about speed times this."""
+
+    drive_force: float = 300.0
+    """[mass diameter / s^2] Constant. Over ``object_damping`` it bounds the speed of the object, to
+    3 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3 / s 0.7e-3; the
+    tails of three-edge grasps grow longer in the same ratio."""
+
+    finger_damping: float = 750.0
+    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.4 / s."""
+
+    object_damping: float = 100.0
+    """[mass / s] A viscous table: the object forgets its speed within 10 ms, so that inertia does
+    not decide where a closing ends (at a tenth of this, objects ring about the target)."""
+
+    finger_mass: float = 0.2
+    """[mass] Irrelevant next to the damping; of the order of the object for a good condition."""
+
+    contact_solref: float = 1.0
+    """[time_step] Time constant of a contact. Stiffer than MuJoCo's advice of 2, which the
+    ``discrete`` integrator allows: 5 steps would already give 1.3e-3 of penetration."""
+
+    linkage_solref: float = 0.01
+    """[time_step] Time constant of the linkage: shape error 1e-8 (6e-5 with MuJoCo's default)."""
+
+    solimp: tuple[float, float, float, float, float] = (0.9999, 0.99999, 1e-4, 0.5, 2.0)
+    """MuJoCo's impedance, for a resting penetration of about 1e-6. Its defaults leave an angle
+    error of 1e-2 rad: useless here."""
+
+    solver_iterations: int = 50
+    """Cap on Newton iterations; 5 are usually enough, 3 are not."""
+
+    solver_tolerance: float = 1e-10
+    """MuJoCo's scaled tolerance; between 1e-6 and 1e-14 nothing changes."""
+
+    friction: float = 0.0
+    """[1] Coulomb coefficient between fingers and object. With 0 contacts have no tangential
+    rows at all (condim 1): the planner's statements are about frictionless closing."""
+
+    still_speed: float = 3e-6
+    """[diameter / s, rad / s] Slower than this is still. The tail of a three-edge grasp decays with
+    a time constant of about 0.05 s, so what is left is below 1e-6."""
+
+    still_steps: int = 20
+    """[step] ... for this many steps in a row, while two fingers press."""
+
+    max_time: float = 8.0
+    """[s] A closing still moving then has timed out: a failure to look at."""
+
+    pinched_size: float = 1e-4
+    """[diameter] A hand whose longest side is shorter than this has shut on nothing: escaped."""
+
+    def __post_init__(self) -> None:
+        for name in ("time_step", "drive_force", "finger_damping", "object_damping", "max_time"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
+        if not (math.isfinite(self.friction) and self.friction >= 0.0):
+            raise InputError(f"SimConfig.friction is {self.friction}; >= 0 is needed")
+
+    @property
+    def free_speed(self) -> float:
+        """[diameter / s] Root sum square of the three finger speeds while nothing is touched."""
+        return round(self.drive_force / self.finger_damping, 3)
+
+    @property
+    def max_steps(self) -> int:
+        """[step] Bound on the length of one closing."""
+        return math.ceil(self.max_time / self.time_step)

@@ -1,0 +1,118 @@
+"""The object: a free planar body with the exact outline, moments and all, in normalized units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import trimesh
+
+from icage.arrays import FloatArray, read_only
+from icage.outline import Outline
+from sim.config import SimConfig
+from sim.convex_pieces import convex_pieces
+from sim.engine import MjSpec, mj
+from sim.hand_model import FINGER_BIT, OBJECT_BIT, contact_parameters
+
+OBJECT_COLOUR = (0.86, 0.72, 0.45, 1.0)
+
+THINNEST_PIECE = 1e-8
+"""[diameter] Pieces narrower than this are left out: MuJoCo stores mesh vertices in single
+precision, so they could not be told from a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class NormalObject:
+    """The outline moved and scaled so that its area centroid is 0 and its diameter 1.
+
+    Attributes
+    ----------
+    centre, unit:
+        Centroid (2,) and diameter in the case's frame B and unit.
+    vertices:
+        (n, 2), counterclockwise.
+    pieces:
+        Convex polygons that tile it.
+    gyration_squared:
+        [diameter^2] Polar second moment of area about the centroid, per area.
+    """
+
+    outline: Outline = field(repr=False)
+    centre: FloatArray = field(init=False)
+    unit: float = field(init=False)
+    vertices: FloatArray = field(init=False, repr=False)
+    pieces: tuple[FloatArray, ...] = field(init=False, repr=False)
+    gyration_squared: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        centre, unit = self.outline.centroid, self.outline.diameter
+        normal = Outline((self.outline.vertices - centre) / unit)
+        object.__setattr__(self, "centre", read_only(centre))
+        object.__setattr__(self, "unit", unit)
+        object.__setattr__(self, "vertices", normal.vertices)
+        object.__setattr__(self, "pieces", convex_pieces(normal))
+        object.__setattr__(self, "gyration_squared", polar_moment(normal.vertices) / normal.area)
+
+
+def polar_moment(vertices: FloatArray) -> float:
+    """Second moment of area about the origin, integral of x^2 + y^2 over a polygon (n, 2).
+
+    Sum over the edges a b of (a x b) (a.a + a.b + b.b) / 12 (Green's theorem).
+    """
+    a, b = vertices, np.roll(vertices, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return float((cross * ((a * a).sum(1) + (a * b).sum(1) + (b * b).sum(1))).sum() / 12.0)
+
+
+def add_object(spec: MjSpec, thing: NormalObject, finger_radius: float, config: SimConfig) -> None:
+    """Add the body ``object``: two slides, a hinge, one upright prism per convex piece.
+
+    The inertia is stated, not left to the pieces. The prisms reach past the finger spheres, so
+    that a sphere in their middle plane touches walls only.
+    """
+    body = spec.worldbody.add_body(name="object")
+    body.explicitinertial = True
+    body.mass = 1.0
+    spin = thing.gyration_squared
+    body.inertia = [spin, spin, spin]
+    slide, hinge = mj.mjtJoint.mjJNT_SLIDE, mj.mjtJoint.mjJNT_HINGE
+    damping = config.object_damping
+    body.add_joint(name="object_x", type=slide, axis=[1, 0, 0], damping=[damping, 0, 0])
+    body.add_joint(name="object_y", type=slide, axis=[0, 1, 0], damping=[damping, 0, 0])
+    body.add_joint(name="object_turn", type=hinge, axis=[0, 0, 1], damping=[damping * spin, 0, 0])
+    half_height = max(0.05, 2.0 * finger_radius)
+    for number, piece in enumerate(thing.pieces):
+        if _width(piece) < THINNEST_PIECE:
+            continue
+        prism = extrude(piece, half_height)
+        mesh = spec.add_mesh(name=f"piece_{number}")
+        mesh.uservert = prism.vertices.ravel()
+        mesh.userface = prism.faces.ravel()
+        mesh.inertia = mj.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+        geom = body.add_geom(
+            name=f"object_piece_{number}",
+            type=mj.mjtGeom.mjGEOM_MESH,
+            meshname=f"piece_{number}",
+            mass=0.0,
+            contype=OBJECT_BIT,
+            conaffinity=FINGER_BIT,
+            rgba=list(OBJECT_COLOUR),
+        )
+        contact_parameters(geom, config)
+
+
+def extrude(piece: FloatArray, half_height: float) -> trimesh.Trimesh:
+    """Upright prism over a convex polygon (k, 2), from -half_height to +half_height."""
+    fan = np.array([[0, k, k + 1] for k in range(1, len(piece) - 1)])
+    prism = trimesh.creation.extrude_triangulation(piece, fan, 2.0 * half_height)
+    prism.apply_translation([0.0, 0.0, -half_height])
+    return prism
+
+
+def _width(piece: FloatArray) -> float:
+    """Smallest extent of a convex polygon across one of its edges."""
+    edges = np.roll(piece, -1, axis=0) - piece
+    lengths = np.linalg.norm(edges, axis=1)
+    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / lengths[:, None]
+    heights = (piece[None, :, :] - piece[:, None, :]) * normals[:, None, :]
+    return float(heights.sum(2).max(1).min())

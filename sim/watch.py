@@ -1,0 +1,208 @@
+"""What is seen after every step of every closing: depth, shape, size, stillness.
+
+The penetration is measured here, from the poses and the true outline, and not taken from the
+engine's contacts: a contact the engine missed would not be missed here.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from icage.arrays import FloatArray, IntArray
+from sim.scene import Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+RUNNING, SETTLED, PINCHED, TIMED_OUT, DIVERGED = range(5)
+ENDINGS = ("running", "settled", "pinched", "timed_out", "diverged")
+"""How a closing ended, before anybody asks where. A pinched hand has shut on nothing."""
+
+TOUCHING = 1e-6
+"""[diameter] A finger this close to the outline touches it: ten times the resolution of the
+engine's meshes, a thousandth of what a step moves."""
+
+(_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
+_FIELDS = 6
+
+
+@njit(cache=True)
+def depths(
+    vertices: FloatArray, fingers: FloatArray, radius: float, out: FloatArray
+) -> None:  # pragma: no cover - compiled
+    """out[k] = how deep disc k reaches into the polygon; negative: its distance from it.
+
+    ``vertices`` (n, 2), ``fingers`` (m, 2) centres, one unit. Depth = radius - signed distance of
+    the centre from the outline, positive outside.
+    """
+    count = vertices.shape[0]
+    for k in range(fingers.shape[0]):
+        x, y = fingers[k, 0], fingers[k, 1]
+        nearest = math.inf
+        inside = False
+        ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
+        for j in range(count):
+            bx, by = vertices[j, 0] - x, vertices[j, 1] - y
+            ex, ey = bx - ax, by - ay
+            along = -(ax * ex + ay * ey)
+            square = ex * ex + ey * ey
+            if along <= 0.0:
+                distance = ax * ax + ay * ay
+            elif along >= square:
+                distance = bx * bx + by * by
+            else:
+                cross = ax * ey - ay * ex
+                distance = cross * cross / square
+            nearest = min(nearest, distance)
+            if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
+                inside = not inside
+            ax, ay = bx, by
+        signed = math.sqrt(nearest)
+        out[k] = radius + signed if inside else radius - signed
+
+
+@njit(cache=True)
+def _observe(
+    ids: IntArray,
+    qpos: FloatArray,
+    qvel: FloatArray,
+    vertices: FloatArray,
+    radius: float,
+    directions: FloatArray,
+    lengths: FloatArray,
+    coefficients: FloatArray,
+    pinched_sigma: float,
+    still_speed: float,
+    still_steps: int,
+    max_steps: int,
+    seen: FloatArray,
+    still: IntArray,
+    steps: IntArray,
+    ending: IntArray,
+) -> None:  # pragma: no cover - compiled
+    fingers = np.empty((3, 2))
+    depth = np.empty(3)
+    for i in ids:
+        steps[i] += 1
+        turn_cos, turn_sin = math.cos(qpos[i, 5]), math.sin(qpos[i, 5])
+        sigma = 0.0
+        for k in range(3):
+            sigma += coefficients[k] * qpos[i, k]
+            x = directions[k, 0] * qpos[i, k] - qpos[i, 3]
+            y = directions[k, 1] * qpos[i, k] - qpos[i, 4]
+            fingers[k, 0] = turn_cos * x + turn_sin * y
+            fingers[k, 1] = turn_cos * y - turn_sin * x
+        shape = 0.0
+        for k in range(3):
+            shape = max(shape, abs(qpos[i, k] - lengths[k] * sigma))
+        depths(vertices, fingers, radius, depth)
+        deepest = max(depth[0], depth[1], depth[2])
+        touches = 0
+        for k in range(3):
+            if depth[k] > -TOUCHING:
+                touches += 1
+        speed = 0.0
+        for k in range(6):
+            speed = max(speed, abs(qvel[i, k]))
+        seen[i, _DEPTH] = max(deepest, 0.0)
+        seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
+        seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], shape)
+        seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
+        seen[i, _TOUCHES] = touches
+        still[i] = still[i] + 1 if speed < still_speed and touches >= 2 else 0
+        if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
+            ending[i] = DIVERGED
+        elif sigma < pinched_sigma:
+            ending[i] = PINCHED
+        elif still[i] >= still_steps:
+            ending[i] = SETTLED
+        elif steps[i] >= max_steps:
+            ending[i] = TIMED_OUT
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """The running record of N closings of one scene, a row each; updated in place.
+
+    Attributes
+    ----------
+    steps, ending:
+        (N,) integers; ``ending`` is a code into ``ENDINGS``.
+    """
+
+    scene: Scene
+    steps: IntArray
+    ending: IntArray
+    _still: IntArray
+    _seen: FloatArray
+
+    @classmethod
+    def over(cls, scene: Scene, qpos: FloatArray) -> Watch:
+        """Start watching closings that start from qpos (N, 6)."""
+        count = len(qpos)
+        seen = np.zeros((count, _FIELDS))
+        seen[:, _SIGMA_START] = scene.sigma(qpos)
+        return cls(
+            scene,
+            steps=np.zeros(count, dtype=np.int64),
+            ending=np.full(count, RUNNING, dtype=np.int64),
+            _still=np.zeros(count, dtype=np.int64),
+            _seen=seen,
+        )
+
+    def observe(self, ids: IntArray, qpos: FloatArray, qvel: FloatArray) -> None:
+        """Look at the closings ``ids`` after one more step; qpos and qvel are (N, 6)."""
+        scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
+        observe: Callable[..., None] = _observe
+        observe(
+            ids,
+            qpos,
+            qvel,
+            scene.thing.vertices,
+            scene.finger_radius / scene.thing.unit,
+            kinematics.directions,
+            kinematics.lengths,
+            kinematics.tendon_coefficients,
+            config.pinched_size / kinematics.longest_side,
+            config.still_speed,
+            config.still_steps,
+            config.max_steps,
+            self._seen,
+            self._still,
+            self.steps,
+            self.ending,
+        )
+
+    def diverged(self, ids: IntArray) -> None:
+        """Note that the engine gave up on, or warned about, these closings."""
+        self.ending[ids] = DIVERGED
+
+    @property
+    def running(self) -> IntArray:
+        """Ids of the closings that have not ended."""
+        return np.flatnonzero(self.ending == RUNNING)
+
+    @property
+    def penetration_max(self) -> FloatArray:
+        """[diameter] (N,) deepest disc over all steps."""
+        return self._seen[:, _DEPTH_MAX]
+
+    @property
+    def penetration_rest(self) -> FloatArray:
+        """[diameter] (N,) deepest disc after the last step."""
+        return self._seen[:, _DEPTH]
+
+    @property
+    def shape_error_max(self) -> FloatArray:
+        """[diameter] (N,) farthest a finger was from its place in the similar triangle."""
+        return self._seen[:, _SHAPE_MAX]
+
+    @property
+    def sigma_rise_max(self) -> FloatArray:
+        """[1] (N,) largest sigma / sigma at the start over all steps: above 1 the hand opened."""
+        return self._seen[:, _RISE_MAX]
