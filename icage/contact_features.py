@@ -1,0 +1,99 @@
+"""Where a finger can carry force: straight edges and concave vertices. [Bunis2018, Sec. VII-A]
+
+A grasp balances when the lines of force meet in one point P and the inward normals positively span
+the plane. For an edge, P must lie in the strip over it; for a concave vertex, in the double cone
+of its normals, here as two features, one for each side. (The paper's semi-infinite sectors are
+sufficient, not necessary, and do not tell squeezing from stretching.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from icage.kernels.triples import contact_at, feasible_triples
+from icage.outline import Outline
+
+_REACH = 3.0
+"""[diameter] Points of concurrency further than this from the object's middle are not looked at:
+lines that meet there are nearly parallel, and such a grasp hardly holds an orientation."""
+
+EDGE, VERTEX = 0, 1
+
+
+@dataclass(frozen=True, slots=True)
+class Features:
+    """Contact features as arrays; ``planes`` (n, 2, 3) are a x + b y >= c for P."""
+
+    kind: IntArray
+    index: IntArray
+    point: FloatArray
+    normal: FloatArray
+    planes: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    def contacts(self, triple: IntArray, p: FloatArray) -> FloatArray:
+        """Finger positions (3, 2) of a triple of features for a concurrency point P."""
+        rows = [contact_at(self.kind[f], self.point[f], self.normal[f], p[0], p[1]) for f in triple]
+        return np.array([row[:2] for row in rows])
+
+    def allows(self, triple: IntArray, p: FloatArray) -> bool:
+        """Whether P lies in the sets of all three features."""
+        planes = self.planes[triple].reshape(-1, 3)
+        return bool((planes[:, 0] * p[0] + planes[:, 1] * p[1] >= planes[:, 2]).all())
+
+
+def features_of(outline: Outline, *, longer_than: float = 0.0) -> Features:
+    """Edges (longer than a bound, to leave out the chords of arcs) and concave vertices."""
+    a = outline.vertices
+    b = np.roll(a, -1, axis=0)
+    side = b - a
+    length = np.hypot(side[:, 0], side[:, 1])
+    tangent = side / length[:, None]
+    inward = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    edges = np.flatnonzero(length > longer_than)
+    strips = np.stack(
+        [
+            np.column_stack([tangent, (tangent * a).sum(axis=1)]),
+            np.column_stack([-tangent, -(tangent * b).sum(axis=1)]),
+        ],
+        axis=1,
+    )
+    back = np.roll(tangent, 1, axis=0)
+    before = np.roll(inward, 1, axis=0)
+    turn = back[:, 0] * tangent[:, 1] - back[:, 1] * tangent[:, 0]
+    concave = np.flatnonzero(turn < -1e-6)
+    # a concave corner turns clockwise: its normals run counterclockwise from this edge's to the
+    # one before
+    low, high = inward[concave], before[concave]
+    cone = np.stack(
+        [np.column_stack([-low[:, 1], low[:, 0]]), np.column_stack([high[:, 1], -high[:, 0]])],
+        axis=1,
+    )
+    bound = (cone * a[concave][:, None, :]).sum(axis=2)
+    cones = np.concatenate([cone, bound[:, :, None]], axis=2)
+    middle = (low + high) / np.maximum(np.hypot(*(low + high).T), 1e-9)[:, None]
+    return Features(
+        kind=np.repeat([EDGE, VERTEX, VERTEX], [len(edges), len(concave), len(concave)]),
+        index=np.concatenate([edges, concave, concave]),
+        point=np.concatenate([a[edges], a[concave], a[concave]]),
+        normal=np.concatenate([inward[edges], middle, middle]),
+        planes=np.concatenate([strips[edges], cones, -cones]),
+    )
+
+
+def balanced_triples(
+    features: Features, outline: Outline, apart: float
+) -> tuple[IntArray, FloatArray]:
+    """All triples of features that can balance and squeeze, and a concurrency point for each.
+
+    Complexity: O(n^3) clips of small convex polygons, about 0.2 us each.
+    """
+    return feasible_triples(
+        features.kind, features.point, features.normal, features.planes,
+        outline.centroid, _REACH * outline.diameter, apart,
+    )  # fmt: skip

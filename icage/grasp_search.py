@@ -1,0 +1,298 @@
+"""Good target grasps of an outline: all triples of contacts that squeeze, the best made better.
+
+On real tools most immobilizing grasps have useless cages, so enumeration alone is not enough:
+every triple of features is tried, the promising ones at more points of concurrency, and the best
+are improved by moving their contacts continuously. Our own; the sets are those of [Bunis2018,
+Sec. VII-A] with the squeezing test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Literal, TypeAlias
+
+import numpy as np
+from scipy.optimize import minimize
+
+from icage.arrays import FloatArray, IntArray
+from icage.contact_features import EDGE, Features, balanced_triples, features_of
+from icage.errors import GraspError, HandError, InputError
+from icage.exterior import Pieces, exterior_pieces, shortest_side
+from icage.finger import offsets
+from icage.hand import HandShape
+from icage.outline import Outline
+from icage.reach import largest_sigma_in
+from icage.solver import Terrain, search
+from icage.target import contacts_as_configuration, find_target
+from icage.tolerance import NOT_A_CAGE
+
+Aim: TypeAlias = Literal["first", "cage"]
+"""What is ranked: sigma_first / sigma_0, or sigma_max / sigma_0."""
+
+_SEGMENTS = 16
+_WIDEST = 8.0
+"""Longest over shortest side of the hands that are searched; beyond it they are poor hands."""
+
+_FLATTEST = 0.05
+"""Least height over longest side of the hands that are searched: the same."""
+
+_SEARCH_LIMIT = 20_000
+_CHUNK = 64
+_MORE_POINTS = 8
+_PROMISING = 300
+_IMPROVED = 32
+_STEPS = 90
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A grasp and its levels as found on the polygon that was searched, [unit]."""
+
+    contacts: FloatArray
+    triple: tuple[int, int, int]
+    """Contact features (see Features), counterclockwise."""
+    sigma_0: float
+    sigma_first: float
+    sigma_max: float
+    score: float
+
+
+class Bench:
+    """One outline, cut into pieces once for all hands that are tried on it."""
+
+    def __init__(self, outline: Outline, radius: float, aim: Aim) -> None:
+        self.radius = radius
+        self.aim: Aim = aim
+        self.outline = offsets(outline, radius, _SEGMENTS).inner if radius > 0.0 else outline
+        chord = 2.1 * radius * np.sin(0.25 * np.pi / _SEGMENTS)
+        self.features: Features = features_of(self.outline, longer_than=float(chord))
+        self.apart = max(2.02 * radius, 1e-3 * outline.diameter)
+        self._pieces: Pieces
+        widest = HandShape(complex(0.5, (_WIDEST**2 - 0.25) ** 0.5))
+        self._pieces, self._origin = exterior_pieces(self.outline, widest)
+
+    def evaluate(
+        self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)
+    ) -> Candidate | None:
+        """Levels of the grasp on these contacts, None if it is no cage (or a poor hand)."""
+        try:
+            hand = HandShape.from_contacts(contacts)
+        except HandError:
+            return None
+        sides = [1.0, abs(hand.z_3), abs(hand.z_3 - 1.0)]
+        longest = max(sides)
+        if longest > _WIDEST * min(sides) or hand.z_3.imag < _FLATTEST * longest**2:
+            return None
+        if float(np.hypot(*(contacts[1] - contacts[0]))) * shortest_side(hand) < self.apart:
+            return None
+        terrain = Terrain.of_pieces(self.outline, hand, self._pieces, self._origin)
+        target = find_target(terrain, contacts_as_configuration(terrain, contacts))
+        if target is None or target.plateau is not None:
+            return None
+        found = search(terrain, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
+        if found.gave_up:
+            return None
+        top = largest_sigma_in(found) if found.never_escapes else found.level
+        first = min(found.sigma_first(), top)
+        if top / target.sigma_0 - 1.0 < NOT_A_CAGE:
+            return None
+        score = (first if self.aim == "first" else top) / target.sigma_0
+        a, b, c = triple
+        return Candidate(contacts, (a, b, c), target.sigma_0, first, top, score)
+
+    def at(self, triple: IntArray, p: FloatArray) -> Candidate | None:
+        """The grasp of three features whose lines of force meet at P."""
+        if not self.features.allows(triple, p):
+            return None
+        return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
+
+    def movable(self, triple: IntArray) -> bool:
+        """Whether any contact of the triple can move (is on an edge)."""
+        return bool((self.features.kind[triple] == EDGE).any())
+
+
+_Job: TypeAlias = tuple[IntArray, FloatArray]
+_Found: TypeAlias = tuple[Candidate | None, FloatArray]
+
+_bench: Bench | None = None
+
+
+def _start_worker(outline: FloatArray, radius: float, aim: Aim) -> None:
+    global _bench
+    _bench = Bench(Outline(outline), radius, aim)
+
+
+def _try_chunk(jobs: list[_Job]) -> list[_Found]:
+    assert _bench is not None
+    return [(_bench.at(triple, p), p) for triple, p in jobs]
+
+
+def _improve_chunk(jobs: list[_Job]) -> list[_Found]:
+    assert _bench is not None
+    return [improved(_bench, triple, p) for triple, p in jobs]
+
+
+def improved(bench: Bench, triple: IntArray, start: FloatArray) -> _Found:
+    """Move the contacts of a grasp by moving P: Nelder-Mead on the score, bounded steps."""
+    best: list[_Found] = [(bench.at(triple, start), start)]
+    size = bench.outline.diameter
+
+    def loss(p: FloatArray) -> float:
+        found = bench.at(triple, p)
+        if found is None:
+            return 1.0
+        if best[0][0] is None or found.score > best[0][0].score:
+            best[0] = (found, p.copy())
+        return -found.score
+
+    for step in (0.03, 0.004):
+        p = best[0][1]
+        simplex = p + size * step * np.array([[0.0, 0.0], [1.0, 0.3], [-0.3, 1.0]])
+        minimize(
+            loss, p, method="Nelder-Mead",
+            options={"initial_simplex": simplex, "maxfev": _STEPS // 2, "xatol": 1e-6 * size},
+        )  # fmt: skip
+    return best[0]
+
+
+Progress: TypeAlias = Callable[[str, int, int], None]
+
+
+def _silent(_stage: str, _done: int, _total: int) -> None:
+    """No progress report."""
+
+
+def best_grasps(
+    outline: Outline,
+    *,
+    finger_radius: float = 0.0,
+    top: int = 10,
+    aim: Aim = "first",
+    rng: np.random.Generator,
+    workers: int = 1,
+    progress: Progress = _silent,
+) -> list[Candidate]:
+    """The best grasps that were found, best first, no two with nearly the same contacts.
+
+    Parameters
+    ----------
+    finger_radius:
+        Radius of disc fingers, [unit]; the search then runs on the inner offset polygon, so the
+        levels are those of that polygon: plan the winners for certified ones.
+    top:
+        How many to return.
+    aim:
+        "first" ranks by sigma_first / sigma_0, "cage" by sigma_max / sigma_0 (the largest sigma
+        of the component for a hand that never escapes).
+    workers:
+        Processes; the result does not depend on it.
+
+    Raises
+    ------
+    GraspError:
+        No immobilizing grasp was found.
+    """
+    if top < 1:
+        raise InputError(f"top = {top}; at least 1 is needed")
+    bench = Bench(outline, finger_radius, aim)
+    triples, points = balanced_triples(bench.features, bench.outline, bench.apart)
+    jobs: list[_Job] = list(zip(triples, points, strict=True))
+    with _Workers(outline, finger_radius, aim, workers, bench) as pool:
+        found = pool.run(_try_chunk, jobs, "every triple", progress)
+        ranked = _ranked(found)
+        more: list[_Job] = []
+        for candidate, p in ranked[:_PROMISING]:
+            triple = np.array(candidate.triple)
+            if bench.movable(triple):
+                more += [(triple, q) for q in _around(p, bench, rng)]
+        ranked = _ranked(found + pool.run(_try_chunk, more, "promising ones", progress))
+        seeds: list[_Job] = [
+            (np.array(c.triple), p) for c, p in _one_per_triple(ranked)[:_IMPROVED]
+        ]
+        better = pool.run(_improve_chunk, seeds, "improving", progress)
+    answer = _distinct([c for c, _ in _ranked(better + [(c, p) for c, p in ranked])], bench, top)
+    if not answer:
+        raise GraspError("no immobilizing three-finger grasp was found on this outline")
+    return answer
+
+
+def _around(p: FloatArray, bench: Bench, rng: np.random.Generator) -> FloatArray:
+    """Points of concurrency near P, at several scales."""
+    scale = bench.outline.diameter * np.array([0.02, 0.05, 0.1, 0.2])
+    size = np.resize(scale, _MORE_POINTS)
+    return p + size[:, None] * rng.standard_normal((_MORE_POINTS, 2))
+
+
+def _ranked(found: Iterable[_Found]) -> list[tuple[Candidate, FloatArray]]:
+    good = [(c, p) for c, p in found if c is not None]
+    return sorted(good, key=lambda pair: (-pair[0].score, pair[0].triple))
+
+
+def _one_per_triple(
+    ranked: list[tuple[Candidate, FloatArray]],
+) -> list[tuple[Candidate, FloatArray]]:
+    seen: set[tuple[int, int, int]] = set()
+    kept: list[tuple[Candidate, FloatArray]] = []
+    for candidate, p in ranked:
+        if candidate.triple not in seen:
+            seen.add(candidate.triple)
+            kept.append((candidate, p))
+    return kept
+
+
+def _distinct(ranked: list[Candidate], bench: Bench, top: int) -> list[Candidate]:
+    """Drop grasps whose contacts all lie near those of a better one (in any labelling)."""
+    near = 0.02 * bench.outline.diameter
+    kept: list[Candidate] = []
+    for candidate in ranked:
+        copies = [np.roll(candidate.contacts, k, axis=0) for k in range(3)]
+        if any(
+            float(np.hypot(*(c - other.contacts).T).max()) < near for other in kept for c in copies
+        ):
+            continue
+        kept.append(candidate)
+        if len(kept) == top:
+            break
+    return kept
+
+
+class _Workers:
+    """Chunks of jobs in order, in this process or in several."""
+
+    def __init__(
+        self, outline: Outline, radius: float, aim: Aim, workers: int, bench: Bench
+    ) -> None:
+        global _bench
+        _bench = bench
+        self._pool: ProcessPoolExecutor | None = None
+        if workers > 1:
+            self._pool = ProcessPoolExecutor(
+                workers, mp_context=get_context("spawn"), initializer=_start_worker,
+                initargs=(outline.vertices, radius, aim),
+            )  # fmt: skip
+
+    def __enter__(self) -> _Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+
+    def run(
+        self,
+        work: Callable[[list[_Job]], list[_Found]],
+        jobs: list[_Job],
+        stage: str,
+        progress: Progress,
+    ) -> list[_Found]:
+        size = _CHUNK if work is _try_chunk else 1
+        chunks = [jobs[k : k + size] for k in range(0, len(jobs), size)]
+        results = self._pool.map(work, chunks) if self._pool else map(work, chunks)
+        found: list[_Found] = []
+        for done in results:
+            found += done
+            progress(stage, len(found), len(jobs))
+        return found

@@ -1,0 +1,73 @@
+"""All immobilizing grasps of one given hand on an outline. [Bunis2018, Fig. 2]
+
+Every strict local minimum of sigma over the whole free space, however shallow its basin (down to
+the depth cut): from the least points of all cells, kept if no cell round them goes deeper.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from icage.errors import InputError
+from icage.hand import HandShape
+from icage.kernels.search import TIE
+from icage.kernels.tree import lowest_cells
+from icage.outline import Outline
+from icage.solver import Configuration, Terrain
+from icage.target import is_local_minimum, plateau_through
+from icage.tolerance import DEPTH_CUT, SAME_POINT
+
+MOST_PIECES = 250
+"""Pieces of the plane beyond which the table of all cells would not fit into 1 GB."""
+
+
+def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
+    """Contacts (3, 2) of all strict local minima of sigma, by sigma, then by contacts.
+
+    Raises
+    ------
+    InputError:
+        The outline needs more than ``MOST_PIECES`` convex pieces around it.
+
+    Examples
+    --------
+    >>> triangle = Outline([[0, 0], [1, 0], [0.5, 0.75**0.5]])
+    >>> len(grasps_of_hand(triangle, HandShape.from_angles_deg(60, 120)))
+    3
+    """
+    terrain = Terrain.around(outline, hand)
+    pieces = terrain.pieces
+    if pieces.count > MOST_PIECES:
+        raise InputError(
+            f"the outline needs {pieces.count} pieces; up to {MOST_PIECES} are allowed here: "
+            "simplify it"
+        )
+    size = pieces.diameter
+    cells, low, where = lowest_cells(
+        pieces, terrain.z, terrain.cap, terrain.worst, TIE * size, DEPTH_CUT * size
+    )
+    found: list[tuple[float, Configuration]] = []
+    for k in np.argsort(low[:, 0], kind="stable"):
+        here = _least_point(terrain, cells[k], low[k], where[k])
+        sigma = float(low[k, 0])
+        if any(
+            abs(sigma - s) <= SAME_POINT * size and _same(terrain, here, known)
+            for s, known in found[-64:]
+        ):
+            continue
+        if is_local_minimum(terrain, here, sigma) and not plateau_through(terrain, here, sigma):
+            found.append((sigma, here))
+    return [terrain.contacts(here) for _, here in found]
+
+
+def _least_point(
+    terrain: Terrain, cell: IntArray, low: FloatArray, where: IntArray
+) -> Configuration:
+    a, b = terrain.on_edge(cell, int(where[0]), int(where[1]), low[1], low[2])
+    return Configuration(0.5 * (a.d + b.d), a.w)
+
+
+def _same(terrain: Terrain, a: Configuration, b: Configuration) -> bool:
+    shift = np.abs((a.d - b.d) + (a.w - b.w) * terrain.hand.z).max()
+    return bool(shift <= 1e-7 * terrain.pieces.diameter)
