@@ -30,8 +30,6 @@ def run(args: argparse.Namespace) -> int:
     from experiments.plan_json import plan_document, plan_summary
     from icage.errors import InputError
     from icage.formats.case_json import read_case
-    from icage.planner import plan
-    from icage.regions import caging_regions
 
     path = case_file(args.case)
     check_output("--json", args.json, path)
@@ -41,6 +39,10 @@ def run(args: argparse.Namespace) -> int:
     if args.figure is not None and args.json is not None and args.json == args.figure:
         raise InputError(f"--json and --figure both name {args.json!r}")
     case = read_case(path)
+
+    from icage.planner import plan  # only now: it takes a second to load
+    from icage.regions import caging_regions
+
     cage = plan(case.outline, case.contacts, case.finger_radius)
     document: dict[str, Any] = {}
     if args.json is not None:

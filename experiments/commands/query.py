@@ -32,11 +32,8 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.inputs import case_file
     from experiments.json_out import write_json
-    from experiments.query_json import query_document, query_summary
     from icage.formats.case_json import read_case
     from icage.formats.placements import read_placements, read_placements_stream
-    from icage.membership import query
-    from icage.planner import plan
 
     path = case_file(args.case)
     check_output("--json", args.json, path, Path(args.placements))
@@ -45,6 +42,11 @@ def run(args: argparse.Namespace) -> int:
         placements = read_placements_stream(sys.stdin.buffer)
     else:
         placements = read_placements(Path(args.placements))
+
+    from experiments.query_json import query_document, query_summary
+    from icage.membership import query  # only now: it takes a second to load
+    from icage.planner import plan
+
     cage = plan(case.outline, case.contacts, case.finger_radius)
     answers = query(cage, placements)
     if args.json is not None:

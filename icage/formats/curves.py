@@ -44,10 +44,10 @@ class Bezier:
     control: FloatArray
 
     def at(self, t: FloatArray) -> FloatArray:
-        """Points (k, 2), by de Casteljau's steps."""
+        """Points (k, 2), by de Casteljau's steps; the ends are the end points exactly."""
         rows = [np.broadcast_to(point, (len(t), 2)) for point in self.control]
         while len(rows) > 1:
-            rows = [a + t[:, None] * (b - a) for a, b in pairwise(rows)]
+            rows = [(1.0 - t[:, None]) * a + t[:, None] * b for a, b in pairwise(rows)]
         return np.array(rows[0])
 
     def bend(self) -> float:

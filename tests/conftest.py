@@ -1,0 +1,33 @@
+"""What all tests share: the solved problems, and hypothesis made repeatable."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+CASES = Path(__file__).parent / "cases"
+
+settings.register_profile(
+    "repeatable",
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("repeatable")
+
+
+@pytest.fixture
+def square() -> dict[str, Any]:
+    """A case on the unit square that every parser accepts, as parsed JSON."""
+    return {
+        "format": "icage-case/1",
+        "name": "square",
+        "unit": "mm",
+        "outline": {"vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]},
+        "finger_radius": 0.0,
+        "grasp": {"contacts": [[0, 0.5], [1, 0.25], [1, 0.75]]},
+    }
