@@ -31,7 +31,7 @@ fingers may pass each other too; the centres meet only when the hand is pinched.
 FINGER_COLOURS = ((0.84, 0.24, 0.18), (0.16, 0.55, 0.27), (0.17, 0.39, 0.76))
 """One colour per finger, in every picture."""
 
-_RAIL_DEPTH, _CABLE_DEPTH, _PALM_DEPTH = -0.14, -0.10, -0.19
+_CABLE_DEPTH, _PALM_DEPTH = -0.09, -0.13
 """[diameter] Where the drawn parts lie: below the object, which is seen from above."""
 
 
@@ -223,7 +223,7 @@ def _draw_palm(palm: MjBody, kinematics: HandKinematics, finger_radius: float) -
         name="palm_look",
         type=mj.mjtGeom.mjGEOM_CYLINDER,
         pos=[0.0, 0.0, _PALM_DEPTH],
-        size=[0.09, 0.02, 0.0],
+        size=[0.06, 0.015, 0.0],
         rgba=steel,
     )
     looks_only(hub)
@@ -232,7 +232,7 @@ def _draw_palm(palm: MjBody, kinematics: HandKinematics, finger_radius: float) -
             name=f"rail_{k + 1}_look",
             type=mj.mjtGeom.mjGEOM_CAPSULE,
             fromto=[0.0, 0.0, _PALM_DEPTH, 1.5 * x, 1.5 * y, _PALM_DEPTH],
-            size=[0.35 * finger_radius, 0.0, 0.0],
+            size=[0.25 * finger_radius, 0.0, 0.0],
             rgba=steel,
         )
         looks_only(rail)
@@ -245,7 +245,7 @@ def _draw_fingers(spec: MjSpec, finger_radius: float) -> None:
         cylinder = finger.add_geom(
             name=f"finger_{k + 1}_look",
             type=mj.mjtGeom.mjGEOM_CYLINDER,
-            fromto=[0.0, 0.0, _RAIL_DEPTH, 0.0, 0.0, 0.07],
+            fromto=[0.0, 0.0, _PALM_DEPTH, 0.0, 0.0, 0.07],
             size=[finger_radius, 0.0, 0.0],
             rgba=[*FINGER_COLOURS[k], 1.0],
         )

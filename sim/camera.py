@@ -1,0 +1,109 @@
+"""Frames from MuJoCo's offscreen renderer, where the machine can draw.
+
+EGL first (surfaceless Mesa works), then OSMesa; both are tried once, each in a child process, and
+nothing here touches the environment of this one.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from icage.arrays import FloatArray
+from icage.errors import IcageError
+from sim.engine import mj
+from sim.scene import Scene
+from sim.stage import Decor, View, dressed
+
+BACKENDS: Final = ("egl", "osmesa")
+
+INSTALL_HINT: Final = "apt-get install libegl1 libgl1 libgl1-mesa-dri"
+"""One line for a Debian or Ubuntu machine without a display."""
+
+_PROBE_SECONDS: Final = 60.0
+_WORKER: Final = Path(__file__).with_name("camera_process.py")
+_PROBE_MODEL: Final = """<mujoco><worldbody><camera name="top" pos="0 0 1"/>
+<geom name="ball" size="0.1"/></worldbody></mujoco>"""
+
+
+class RenderingUnavailable(IcageError):
+    """No offscreen drawing on this machine, or the renderer failed half way."""
+
+
+@functools.cache
+def find_backend() -> str | None:
+    """The first of ``BACKENDS`` that draws a frame here, or None. Takes 0.5 to 2 s, once."""
+    model = mj.MjModel.from_xml_string(_PROBE_MODEL)
+    for backend in BACKENDS:
+        try:
+            frames = list(_draw(model, np.zeros((1, 0)), 32, 32, backend))
+        except RenderingUnavailable:
+            continue
+        if frames[0].any():
+            return backend
+    return None
+
+
+def render_frames(
+    scene: Scene, qpos: FloatArray, view: View, decor: Decor | None = None
+) -> Iterator[NDArray[np.uint8]]:
+    """Draw engine positions (F, 6), as in ``Recording.qpos``; yields (height, width, 3) frames.
+
+    Raises
+    ------
+    RenderingUnavailable:
+        Neither EGL nor OSMesa works here; draw in two dimensions instead.
+    """
+    backend = find_backend()
+    if backend is None:
+        raise RenderingUnavailable(
+            f"no offscreen OpenGL on this machine (try: {INSTALL_HINT}); tried {BACKENDS}"
+        )
+    model = _staged_model(scene, view, decor or Decor())
+    yield from _draw(model, qpos, view.width, view.height, backend)
+
+
+def _staged_model(scene: Scene, view: View, decor: Decor) -> object:
+    spec = dressed(scene, view, decor)
+    spec.visual.global_.offwidth = view.width
+    spec.visual.global_.offheight = view.height
+    return spec.compile()
+
+
+def _draw(
+    model: object, qpos: FloatArray, width: int, height: int, backend: str
+) -> Iterator[NDArray[np.uint8]]:
+    size = width * height * 3
+    with tempfile.TemporaryDirectory(prefix="icage-frames-") as folder:
+        model_file, positions_file = Path(folder, "model.mjb"), Path(folder, "positions.npy")
+        mj.mj_saveModel(model, str(model_file))
+        np.save(positions_file, np.asarray(qpos, dtype=np.float64))
+        command = [sys.executable, "-P", str(_WORKER), str(model_file), str(positions_file)]
+        worker = subprocess.Popen(
+            [*command, str(width), str(height)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd=folder,
+            env={**os.environ, "MUJOCO_GL": backend},
+        )
+        try:
+            assert worker.stdout is not None
+            for number in range(len(qpos)):
+                raw = worker.stdout.read(size)
+                if len(raw) < size:
+                    raise RenderingUnavailable(f"{backend} stopped at frame {number}")
+                yield np.frombuffer(raw, dtype=np.uint8).reshape(height, width, 3)
+        finally:
+            worker.kill()
+            worker.wait(timeout=_PROBE_SECONDS)
+            if worker.stdout is not None:
+                worker.stdout.close()
