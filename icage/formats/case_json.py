@@ -139,8 +139,6 @@ def _told_with(place: str) -> Generator[None]:
     try:
         yield
     except InputError as error:
-        message = str(error)
-        if place in message:
-            raise
+        message = str(error) if place in str(error) else f"{place}: {error}"
         kind = CaseError if isinstance(error, FormatError) else type(error)
-        raise kind(f"{place}: {message}") from error
+        raise kind(message) from error
