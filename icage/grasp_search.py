@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
-from icage.contact_features import EDGE, Features, balanced_triples, features_of
+from icage.contact_features import EDGE, VERTEX, Features, balanced_triples, features_of
 from icage.errors import GraspError, HandError, InputError
 from icage.exterior import Pieces, exterior_pieces, shortest_side
 from icage.finger import offsets
@@ -48,6 +48,34 @@ _STEPS = 90
 
 
 @dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which grasps are looked for.
+
+    ``aim`` is what is ranked; ``corners`` the least number of fingers in concave corners (three
+    straight edges are held to second order only); ``near`` = (phi_1, phi_2, within), [rad], keeps
+    to hands of about one shape, read from any finger.
+    """
+
+    aim: Aim = "first"
+    corners: int = 0
+    near: tuple[float, float, float] | None = None
+
+    def shape_error(self, hand: HandShape) -> FloatArray:
+        """Difference (phi_1, phi_2) from the wanted shape in the best of the three readings."""
+        if self.near is None:
+            return np.zeros(2)
+        phis = np.array([hand.relabelled(first).phi for first in range(3)])
+        errors = phis - np.array(self.near[:2])
+        return errors[int(np.argmin(np.abs(errors).max(axis=1)))]
+
+    def allows(self, hand: HandShape) -> bool:
+        """Whether the hand has about the wanted shape."""
+        if self.near is None:
+            return True
+        return bool(np.abs(self.shape_error(hand)).max() <= self.near[2])
+
+
+@dataclass(frozen=True, slots=True)
 class Candidate:
     """A grasp and its levels as found on the polygon that was searched, [unit]."""
 
@@ -60,12 +88,16 @@ class Candidate:
     score: float
 
 
+_Job: TypeAlias = tuple[IntArray, FloatArray]
+_Found: TypeAlias = tuple[Candidate | None, FloatArray]
+
+
 class Bench:
     """One outline, cut into pieces once for all hands that are tried on it."""
 
-    def __init__(self, outline: Outline, radius: float, aim: Aim) -> None:
+    def __init__(self, outline: Outline, radius: float, wanted: Wanted) -> None:
         self.radius = radius
-        self.aim: Aim = aim
+        self.wanted = wanted
         self.outline = offsets(outline, radius, _SEGMENTS).inner if radius > 0.0 else outline
         chord = 2.1 * radius * np.sin(0.25 * np.pi / _SEGMENTS)
         self.features: Features = features_of(self.outline, longer_than=float(chord))
@@ -81,6 +113,8 @@ class Bench:
         try:
             hand = HandShape.from_contacts(contacts)
         except HandError:
+            return None
+        if not self.wanted.allows(hand):
             return None
         sides = [1.0, abs(hand.z_3), abs(hand.z_3 - 1.0)]
         longest = max(sides)
@@ -99,7 +133,7 @@ class Bench:
         first = min(found.sigma_first(), top)
         if top / target.sigma_0 - 1.0 < NOT_A_CAGE:
             return None
-        score = (first if self.aim == "first" else top) / target.sigma_0
+        score = (first if self.wanted.aim == "first" else top) / target.sigma_0
         a, b, c = triple
         return Candidate(contacts, (a, b, c), target.sigma_0, first, top, score)
 
@@ -109,20 +143,54 @@ class Bench:
             return None
         return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
 
+    def jobs(self) -> list[_Job]:
+        """A triple of features and a point of concurrency each: where the search starts."""
+        triples, points = balanced_triples(self.features, self.outline, self.apart)
+        corners = (self.features.kind[triples] == VERTEX).sum(axis=1)
+        use = corners >= self.wanted.corners
+        jobs: list[_Job] = list(zip(triples[use], points[use], strict=True))
+        if self.wanted.near is None:
+            return jobs
+        solved = [(triple, self._shaped(triple, p)) for triple, p in jobs]
+        return [(triple, p) for triple, p in solved if p is not None]
+
+    def _shaped(self, triple: IntArray, p: FloatArray) -> FloatArray | None:
+        """A point of concurrency near P that gives the wanted shape of hand (Gauss-Newton)."""
+        step = 1e-6 * self.outline.diameter
+
+        def error(q: FloatArray) -> FloatArray | None:
+            try:
+                hand = HandShape.from_contacts(self.features.contacts(triple, q))
+            except HandError:
+                return None
+            return self.wanted.shape_error(hand)
+
+        for _ in range(12):
+            here = error(p)
+            if here is None:
+                return None
+            if np.abs(here).max() < 1e-9:
+                break
+            ahead = [error(p + step * np.eye(2)[k]) for k in range(2)]
+            if ahead[0] is None or ahead[1] is None:
+                return None
+            slope = np.column_stack([ahead[0] - here, ahead[1] - here]) / step
+            move = np.linalg.lstsq(slope, -here, rcond=1e-6)[0]
+            longest = 0.1 * self.outline.diameter
+            p = p + move * min(1.0, longest / max(float(np.hypot(*move)), 1e-300))
+        return p if self.features.allows(triple, p) else None
+
     def movable(self, triple: IntArray) -> bool:
         """Whether any contact of the triple can move (is on an edge)."""
         return bool((self.features.kind[triple] == EDGE).any())
 
 
-_Job: TypeAlias = tuple[IntArray, FloatArray]
-_Found: TypeAlias = tuple[Candidate | None, FloatArray]
-
 _bench: Bench | None = None
 
 
-def _start_worker(outline: FloatArray, radius: float, aim: Aim) -> None:
+def _start_worker(outline: FloatArray, radius: float, wanted: Wanted) -> None:
     global _bench
-    _bench = Bench(Outline(outline), radius, aim)
+    _bench = Bench(Outline(outline), radius, wanted)
 
 
 def _try_chunk(jobs: list[_Job]) -> list[_Found]:
@@ -170,7 +238,7 @@ def best_grasps(
     *,
     finger_radius: float = 0.0,
     top: int = 10,
-    aim: Aim = "first",
+    wanted: Wanted = Wanted(),
     rng: np.random.Generator,
     workers: int = 1,
     progress: Progress = _silent,
@@ -184,9 +252,10 @@ def best_grasps(
         levels are those of that polygon: plan the winners for certified ones.
     top:
         How many to return.
-    aim:
-        "first" ranks by sigma_first / sigma_0, "cage" by sigma_max / sigma_0 (the largest sigma
-        of the component for a hand that never escapes).
+    wanted:
+        What is ranked and which grasps are looked at. aim "first" ranks by sigma_first / sigma_0,
+        "cage" by sigma_max / sigma_0 (the largest sigma of the component for a hand that never
+        escapes).
     workers:
         Processes; the result does not depend on it.
 
@@ -197,11 +266,9 @@ def best_grasps(
     """
     if top < 1:
         raise InputError(f"top = {top}; at least 1 is needed")
-    bench = Bench(outline, finger_radius, aim)
-    triples, points = balanced_triples(bench.features, bench.outline, bench.apart)
-    jobs: list[_Job] = list(zip(triples, points, strict=True))
-    with _Workers(outline, finger_radius, aim, workers, bench) as pool:
-        found = pool.run(_try_chunk, jobs, "every triple", progress)
+    bench = Bench(outline, finger_radius, wanted)
+    with _Workers(outline, finger_radius, wanted, workers, bench) as pool:
+        found = pool.run(_try_chunk, bench.jobs(), "every triple", progress)
         ranked = _ranked(found)
         more: list[_Job] = []
         for candidate, p in ranked[:_PROMISING]:
@@ -263,7 +330,7 @@ class _Workers:
     """Chunks of jobs in order, in this process or in several."""
 
     def __init__(
-        self, outline: Outline, radius: float, aim: Aim, workers: int, bench: Bench
+        self, outline: Outline, radius: float, wanted: Wanted, workers: int, bench: Bench
     ) -> None:
         global _bench
         _bench = bench
@@ -271,7 +338,7 @@ class _Workers:
         if workers > 1:
             self._pool = ProcessPoolExecutor(
                 workers, mp_context=get_context("spawn"), initializer=_start_worker,
-                initargs=(outline.vertices, radius, aim),
+                initargs=(outline.vertices, radius, wanted),
             )  # fmt: skip
 
     def __enter__(self) -> _Workers:

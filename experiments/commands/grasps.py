@@ -1,0 +1,197 @@
+"""``icage grasps OUTLINE-OR-CASE``: good target grasps of an object, or all of one hand."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from experiments.options import UNITS, add_json, check_output, count, not_negative, number, positive
+from experiments.options import seed as seed_option
+
+if TYPE_CHECKING:
+    from icage.arrays import FloatArray
+    from icage.cage import Cage
+    from icage.formats.case_json import Object
+
+_WORKERS = 2
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    parser = subparsers.add_parser(
+        "grasps",
+        help="the best target grasps of an object",
+        description="Search the three-finger immobilizing grasps of an object for those with the "
+        "largest cages, or list all immobilizing grasps of one given hand (--phi).",
+    )
+    parser.add_argument(
+        "object", metavar="OUTLINE-OR-CASE", help="drawing, case file, or a shipped object's name"
+    )
+    parser.add_argument("--finger-radius", type=not_negative, help="radius of disc fingers")
+    parser.add_argument("--width", type=positive, help="longer side of a drawing, in UNIT")
+    parser.add_argument("--unit", choices=UNITS, help="unit of a drawing's width (m)")
+    parser.add_argument(
+        "--phi", type=number, nargs=2, metavar=("P1", "P2"), help="shape of the hand, degrees"
+    )
+    parser.add_argument("--top", type=count, default=10, help="how many to list (10)")
+    parser.add_argument(
+        "--aim",
+        choices=("first", "cage"),
+        default="first",
+        help="rank by sigma_first / sigma_0 (first) or by sigma_max / sigma_0 (cage)",
+    )
+    parser.add_argument(
+        "--within",
+        type=positive,
+        metavar="DEG",
+        help="with --phi: search hands within DEG of that shape, read from any finger",
+    )
+    parser.add_argument(
+        "--corners",
+        type=int,
+        choices=range(4),
+        default=0,
+        help="least number of fingers in concave corners (0)",
+    )
+    parser.add_argument("--seed", type=seed_option, default=0, help="of the random moves (0)")
+    add_json(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Search, plan the winners, list them."""
+    from pathlib import Path
+
+    from experiments.inputs import find_object
+    from experiments.json_out import write_json
+    from icage.errors import InputError
+
+    path = Path(args.object)
+    check_output("--json", args.json, *([path] if path.exists() else []))
+    thing = find_object(args.object, args.width, args.unit)
+    radius = thing.finger_radius if args.finger_radius is None else args.finger_radius
+    if radius > thing.outline.diameter:
+        raise InputError(
+            f"--finger-radius {radius:g}: the object's diameter is {thing.outline.diameter:g}"
+        )
+    if args.within is not None and args.phi is None:
+        raise InputError("--within needs --phi")
+    if args.phi is not None and args.within is None:
+        contacts = _of_one_hand(thing, radius, args.phi)
+    else:
+        contacts = _best(thing, radius, args)
+    cages = _planned(thing, radius, contacts, args.aim, args.top)
+    document = {
+        "format": "icage-grasps/1",
+        "name": thing.name,
+        "unit": thing.unit,
+        "finger_radius": radius,
+        "aim": args.aim,
+        "grasps": [_entry(cage, args.aim) for cage in cages],
+    }
+    if args.json is not None:
+        write_json(document, args.json)
+    if args.json != "-":
+        _print(thing, radius, cages, args.aim)
+    return 0
+
+
+def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatArray]:
+    import os
+    from math import radians
+
+    import numpy as np
+
+    from experiments.progress import stage_bar
+    from icage.grasp_search import Wanted, best_grasps
+    from icage.hand import HandShape
+
+    near = None
+    if args.phi is not None:
+        HandShape.from_angles_deg(*args.phi)  # says what is wrong with the angles
+        near = (radians(args.phi[0]), radians(args.phi[1]), radians(args.within))
+
+    with stage_bar() as progress:
+        found = best_grasps(
+            thing.outline,
+            finger_radius=radius,
+            top=args.top,
+            wanted=Wanted(args.aim, args.corners, near),
+            rng=np.random.default_rng(args.seed),
+            workers=min(_WORKERS, os.cpu_count() or 1),
+            progress=progress,
+        )
+    return [candidate.contacts for candidate in found]
+
+
+def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatArray]:
+    from icage.finger import offsets
+    from icage.hand import HandShape
+    from icage.hand_grasps import grasps_of_hand
+
+    hand = HandShape.from_angles_deg(phi[0], phi[1])
+    grown = offsets(thing.outline, radius, 8).inner if radius > 0.0 else thing.outline
+    return grasps_of_hand(grown, hand)
+
+
+def _planned(
+    thing: Object, radius: float, contacts: list[FloatArray], aim: str, top: int
+) -> list[Cage]:
+    """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
+    from icage.errors import GraspError
+    from icage.planner import plan
+    from icage.true_curve import refine
+    from icage.hand import HandShape
+
+    cages: list[Cage] = []
+    for points in contacts:
+        if radius > 0.0:
+            solved = refine(thing.outline, HandShape.from_contacts(points), radius, points)
+            points = points if solved is None else solved
+        try:
+            cage = plan(thing.outline, points, radius)
+        except GraspError:
+            continue
+        if cage.verdict != "not_a_cage":
+            cages.append(cage)
+    return sorted(cages, key=lambda cage: -_score(cage, aim))[:top]
+
+
+def _score(cage: Cage, aim: str) -> float:
+    """Ratio that ranks; levels that do not exist count as the largest sigma of the component."""
+    top = cage.sigma_max if cage.sigma_max is not None else cage.sigma_largest
+    assert top is not None
+    level = top if aim == "cage" or cage.sigma_first is None else cage.sigma_first
+    return level / cage.sigma_0
+
+
+def _entry(cage: Cage, aim: str) -> dict[str, Any]:
+    return {
+        "contacts": cage.contacts,
+        "phi_deg": cage.hand.phi_deg,
+        "sigma_0": cage.sigma_0,
+        "sigma_first": cage.sigma_first,
+        "sigma_max": cage.sigma_max,
+        "score": _score(cage, aim),
+        "verdict": cage.verdict,
+        "free_fingers": cage.grasps[0].free_fingers,
+        "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
+    }
+
+
+def _print(thing: Object, radius: float, cages: list[Cage], aim: str) -> None:
+    print(
+        f"{thing.name}: {len(thing.outline)} vertices, finger radius {radius:g} {thing.unit}, "
+        f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
+    )
+    print(f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10}  phi [deg]         contacts")
+    for cage in cages:
+        first = _ratio(cage.sigma_first, cage.sigma_0)
+        top = _ratio(cage.sigma_max, cage.sigma_0)
+        phi = "({:.2f}, {:.2f})".format(*cage.hand.phi_deg)
+        points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
+        score = _score(cage, aim)
+        print(f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}")
+
+
+def _ratio(level: float | None, sigma_0: float) -> str:
+    return "never" if level is None else f"{level / sigma_0:.4f}"
