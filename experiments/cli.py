@@ -83,7 +83,7 @@ def _say(message: str) -> None:
     line = " ".join(message.split())
     line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
     if len(line) > _LONGEST:
-        line = line[: _LONGEST - 3] + "..."
+        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
     print(f"icage: error: {line}", file=sys.stderr, flush=True)
 
 

@@ -1,0 +1,126 @@
+"""Exit codes beyond input errors, and a help that does not make anybody wait."""
+
+from __future__ import annotations
+
+import argparse
+import pkgutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import experiments.commands
+from experiments import cli
+from tests.cli.runner import here
+from tests.conftest import CASES
+
+CASE = str(CASES / "L_best.json")
+ICAGE = [sys.executable, "-m", "experiments.cli"]
+HEAVY = {"numpy", "scipy", "shapely", "numba", "mujoco", "matplotlib", "PIL", "pyarrow", "tqdm"}
+
+
+def test_help_loads_nothing_heavy():
+    script = (
+        "import sys\nfrom experiments.cli import main\n"
+        "try:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
+        "print(*sorted(sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert not HEAVY & set(done.stderr.split())
+
+
+def test_help_is_quick_and_names_every_command():
+    taken = []
+    for _ in range(3):
+        started = time.perf_counter()
+        done = subprocess.run([*ICAGE, "--help"], capture_output=True, text=True, check=True)
+        taken.append(time.perf_counter() - started)
+    assert min(taken) < 0.4
+    for module in pkgutil.iter_modules(experiments.commands.__path__):
+        assert f"  {module.name} " in done.stdout
+
+
+def test_every_command_has_help(capsys: Any):
+    for module in pkgutil.iter_modules(experiments.commands.__path__):
+        result = here(capsys, module.name, "--help")
+        assert result.code == 0
+        assert result.out.startswith(f"usage: icage {module.name}")
+
+
+def test_the_version(capsys: Any):
+    assert here(capsys, "--version").out.startswith("icage 0.")
+
+
+def raising(error: BaseException) -> Any:
+    def run(_: argparse.Namespace) -> int:
+        raise error
+
+    return run
+
+
+def test_our_own_fault_is_exit_1_with_one_line(monkeypatch: Any, capsys: Any):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(ZeroDivisionError("x\ny")))
+    result = here(capsys, "plan", CASE)
+    assert (result.code, result.out) == (1, "")
+    assert result.err.count("\n") == 1
+    assert "ZeroDivisionError: x y" in result.err
+    assert "ICAGE_DEBUG=1" in result.err
+
+
+def test_a_traceback_for_those_who_ask(monkeypatch: Any):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(ZeroDivisionError()))
+    monkeypatch.setenv("ICAGE_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        cli.main(["plan", CASE])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_an_interrupt_is_exit_130_without_a_traceback():
+    command = subprocess.Popen(
+        [*ICAGE, "query", CASE, "-"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(2.0)  # until it waits for its placements
+    command.send_signal(signal.SIGINT)
+    out, err = command.communicate(timeout=60)
+    assert (command.returncode, out) == (130, "")
+    assert "Traceback" not in err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX pipes")
+def test_a_reader_that_goes_away_is_no_drama():
+    command = subprocess.Popen(
+        [*ICAGE, "plan", CASE, "--json", "-"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert command.stdout is not None
+    assert command.stderr is not None
+    command.stdout.close()
+    err = command.stderr.read()
+    assert command.wait(timeout=60) == 1
+    assert err == ""
+
+
+def test_an_outline_becomes_a_case_file(tmp_path: Path, capsys: Any):
+    from icage.formats.case_json import read_object
+    from models import outline_path
+
+    file = tmp_path / "saw.json"
+    drawing = str(outline_path("saw").parent / "saw.svg")
+    options = ["--width", "450", "--tolerance", "1.5", "--unit", "mm", "--json", str(file)]
+    result = here(capsys, "outline", drawing, *options)
+    assert result.code == 0
+    assert result.out.startswith("saw: 53 vertices")
+    made, shipped = read_object(file), read_object(outline_path("saw"))
+    assert made.outline.vertices == pytest.approx(shipped.outline.vertices, abs=1e-9)
+    assert made.unit == shipped.unit == "mm"
