@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from experiments.options import reason
 from icage.errors import InputError
 from icage.formats.case_json import Case, Object, parse_unit, read_case, read_object
 from icage.formats.svg import read_svg
@@ -53,7 +54,7 @@ def _given(text: str) -> Path:
     try:
         missing = not path.exists()
     except (OSError, ValueError) as error:
-        raise InputError(f"{text!r} cannot be a file: {error}") from error
+        raise InputError(f"{text!r} cannot be a file: {reason(error)}") from error
     if missing:
         names = ", ".join(object_names())
         raise InputError(f"{text!r} does not exist; shipped objects: {names}")

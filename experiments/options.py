@@ -85,4 +85,9 @@ def check_output(option: str, target: str | None, *inputs: Path) -> None:
         if any(path.exists() and given.exists() and path.samefile(given) for given in inputs):
             raise InputError(f"{option} {target!r} would overwrite an input file")
     except (OSError, ValueError) as error:
-        raise InputError(f"{option} {target!r} cannot be written: {error}") from error
+        raise InputError(f"{option} {target!r} cannot be written: {reason(error)}") from error
+
+
+def reason(error: OSError | ValueError) -> str:
+    """Why a path cannot be used, without the path again."""
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
