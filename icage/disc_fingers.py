@@ -62,7 +62,7 @@ def plan_discs(outline: Outline, hand: HandShape, contacts: FloatArray, radius: 
     if not lower:
         return _nothing_there(outline, hand, contacts, radius)
     basis = max(lower, key=lambda look: (look.sigma_max, look.segments))
-    cage = cage_on(basis.found.terrain, contacts, basis.target, outline, radius)
+    cage = cage_on(basis.found.terrain, contacts, basis.target, outline, radius, basis.found)
     if cage.verdict == "not_a_cage":
         return replace(cage, contacts=contacts)
     return _bracketed(cage, looks, basis, true, contacts, closed)

@@ -39,6 +39,8 @@ class Pieces(NamedTuple):
     slot_neighbour: IntArray
     normal_x: FloatArray
     normal_y: FloatArray
+    wall_from: IntArray
+    wall_to: IntArray
     scale: float
     diameter: float
 
@@ -143,7 +145,7 @@ def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) ->
         ],
         dtype=np.int64,
     )
-    extent = float(np.abs(vertices).max())
+    walls = np.flatnonzero(neighbour == WALL)
     return Pieces(
         x=np.ascontiguousarray(vertices[:, 0]),
         y=np.ascontiguousarray(vertices[:, 1]),
@@ -152,6 +154,8 @@ def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) ->
         slot_neighbour=neighbour,
         normal_x=-side[:, 1] / length,
         normal_y=side[:, 0] / length,
+        wall_from=slot_vertex[walls],
+        wall_to=slot_end[walls],
         scale=diameter,
         diameter=diameter,
     )

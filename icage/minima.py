@@ -187,7 +187,9 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
     smallest = min(_least_norm(a.w, b.w) for a, b in zip(points, points[1:], strict=False))
     rows = [found.terrain.placement(p) for p in points]
-    rows.append(np.array([*rows[-1][:3], 0.0]))
+    # the last piece, or the finger that stands still, takes all three
+    still = found.terrain.contacts(points[-1])[max(found.standing, 0)]
+    rows.append(np.array([*still, rows[-1][2], 0.0]))
     side = min(1.0, abs(found.terrain.hand.z_3), abs(found.terrain.hand.z_3 - 1.0))
     return np.array(rows), smallest * side
 

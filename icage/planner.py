@@ -11,7 +11,7 @@ from icage.hand import HandShape
 from icage.minima import escape_path, first_joining, grasps_and_punctures
 from icage.outline import Outline
 from icage.reach import largest_sigma_in
-from icage.solver import Terrain, Tree, merge_tree, search
+from icage.solver import Search, Terrain, Tree, merge_tree, search
 from icage.target import Target, contacts_as_configuration, find_target
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE
 from icage.why import plateau_reason, why_not
@@ -81,15 +81,19 @@ def cage_on(
     target: Target | None,
     outline: Outline,
     radius: float = 0.0,
+    known: Search | None = None,
 ) -> Cage:
-    """The cage of a target on the polygon of a terrain, whose fingers are points."""
+    """The cage of a target on the polygon of a terrain, whose fingers are points.
+
+    ``known`` is the search from the target, where it has been made already.
+    """
     hand = terrain.hand
     if target is None:
         return not_a_cage(outline, hand, contacts, why_not(terrain, contacts), radius)
     if target.plateau is not None:
         why = plateau_reason(target.plateau, terrain)
         return not_a_cage(outline, hand, contacts, why, radius)
-    found = search(terrain, target.cell, target.sigma_0)
+    found = search(terrain, target.cell, target.sigma_0) if known is None else known
     if found.gave_up:
         raise GeometryError(f"the search gave up after {len(found.nodes)} cells")
     tree = merge_tree(found)

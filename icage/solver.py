@@ -22,8 +22,6 @@ from icage.tolerance import DEPTH_CUT, LEVEL, PASS_ERROR
 CELL_LIMIT = 5_000_000
 """Cells visited before the search gives up: about 1 GB."""
 
-NO_GOAL: IntArray = np.zeros(0, dtype=np.int64)
-
 
 class Configuration(NamedTuple):
     """A hand in the plane: finger k at d + w z_k, relative to the pieces' origin."""
@@ -110,6 +108,8 @@ class Search:
     outcome: int
     level: float
     """sigma_max, or inf if the hand never escapes."""
+    standing: int
+    """Finger (0..2) that the others can shrink to at the end, -1 if all are in one piece."""
     nodes: IntArray
     node_level: FloatArray
     edges: IntArray
@@ -170,34 +170,13 @@ def search(
     *,
     stop_above: float = np.inf,
     limit: int = CELL_LIMIT,
-    goal: IntArray = NO_GOAL,
 ) -> Search:
     """Visit the cells around the target's in ascending order of the pass to them."""
-    outcome, level, nodes, node_level, edges, edge_value, records, tally, keys, values = explore(
-        terrain.pieces,
-        terrain.z,
-        np.asarray(cell, dtype=np.int64),
-        sigma_0,
-        terrain.cap,
-        terrain.worst,
-        stop_above,
-        limit,
-        goal,
-    )
-    return Search(
-        terrain,
-        sigma_0,
-        int(outcome),
-        float(level),
-        nodes,
-        node_level,
-        edges,
-        edge_value,
-        records,
-        tally,
-        keys,
-        values,
-    )
+    outcome, level, standing, *arrays = explore(
+        terrain.pieces, terrain.z, np.asarray(cell, dtype=np.int64), sigma_0,
+        terrain.cap, terrain.worst, stop_above, limit,
+    )  # fmt: skip
+    return Search(terrain, sigma_0, int(outcome), float(level), int(standing), *arrays)
 
 
 def merge_tree(found: Search) -> Tree:

@@ -6,7 +6,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from icage.errors import CaseError, FormatError, InputError
 from icage.formats.contacts import check_contacts
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
-from icage.formats.svg import read_svg
+from icage.formats.svg import Unit, read_svg
 from icage.outline import MAX_VERTICES, Outline
 
 FORMAT: Final = "icage-case/1"
@@ -26,7 +26,6 @@ MAX_BYTES: Final = 10_000_000
 MAX_NAME: Final = 100
 """Characters of a case's name."""
 
-Unit = Literal["m", "mm", "cm"]
 UNITS: Final = ("m", "mm", "cm")
 
 
@@ -98,7 +97,9 @@ def parse_object(case: dict[str, Any], folder: Path) -> Object:
             f"name is {describe(name)}; a printable string of 1 to {MAX_NAME} characters is needed"
         )
     unit = parse_unit(case.get("unit", "m"))
-    outline = _parse_outline(an_object(required(case, "outline", "the case"), "outline"), folder)
+    outline = _parse_outline(
+        an_object(required(case, "outline", "the case"), "outline"), folder, unit
+    )
     finger_radius = a_number(case.get("finger_radius", 0.0), "finger_radius")
     if finger_radius < 0.0:
         raise CaseError(f"finger_radius is {finger_radius:g}; 0 or more is needed")
@@ -112,7 +113,7 @@ def parse_unit(value: object) -> Unit:
     return value
 
 
-def _parse_outline(data: dict[str, Any], folder: Path) -> Outline:
+def _parse_outline(data: dict[str, Any], folder: Path, unit: Unit) -> Outline:
     if ("vertices" in data) == ("file" in data):
         have = "both" if "vertices" in data else "neither"
         raise CaseError(f"outline has {have} of the keys 'vertices' and 'file'; one is needed")
@@ -125,12 +126,12 @@ def _parse_outline(data: dict[str, Any], folder: Path) -> Outline:
         raise CaseError(f"outline.file is {describe(file)}; the path of an SVG file is needed")
     if not file.lower().endswith(".svg"):
         raise CaseError(f"outline.file is {describe(file)}; a drawing *.svg is needed")
-    width = a_number(required(data, "width", "outline"), "outline.width")
-    tolerance = data.get("tolerance")
-    if tolerance is not None or "tolerance" in data:
-        tolerance = a_number(tolerance, "outline.tolerance")
+    width, tolerance = (
+        a_number(data[key], f"outline.{key}") if key in data else None
+        for key in ("width", "tolerance")
+    )
     with _told_with("outline"):
-        return read_svg(folder / file, width, tolerance)
+        return read_svg(folder / file, width, tolerance, unit)
 
 
 @contextmanager

@@ -10,20 +10,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 import shapely
 
 from icage.arrays import FloatArray
-from icage.errors import FormatError
+from icage.errors import FormatError, InputError
 from icage.formats.curves import Curve, flatten
 from icage.formats.files import read_bytes
 from icage.formats.fill import filled
 from icage.formats.simplify import simplified
 from icage.formats.svg_shapes import Shape, drawn_shapes
 from icage.formats.svg_tree import MAX_BYTES, drawable
-from icage.outline import Outline
+from icage.outline import LARGEST_COORDINATE, Outline
+
+Unit = Literal["m", "mm", "cm"]
+"""What lengths of a case may be in."""
 
 DEFAULT_TOLERANCE: Final = 1e-3
 """[width] Tolerance where none is given. [contract]"""
@@ -34,34 +37,64 @@ TOLERANCE_RANGE: Final = (1e-6, 0.1)
 MAX_POINTS: Final = 200_000
 """Vertices of the flattened drawing."""
 
+_PIXEL: Final[dict[Unit, float]] = {"m": 0.0254 / 96.0, "cm": 2.54 / 96.0, "mm": 25.4 / 96.0}
+"""[unit] A pixel of a drawing that states its size: 96 an inch. [CSS Values 4, Sec. 6.2]"""
+
 _FLATTEN: Final = 0.02
 _SIMPLIFY: Final = 0.95
 """[tolerance] Shares of flattening (small, since it also moves the crossings of shapes) and of
 simplification."""
 
 
-def read_svg(path: Path, width: float, tolerance: float | None = None) -> Outline:
-    """Outline of the drawing in a file, in the unit of ``width``.
+def read_svg(
+    path: Path, width: float | None = None, tolerance: float | None = None, unit: Unit = "m"
+) -> Outline:
+    """Outline of the drawing in a file, in ``unit``.
 
     Parameters
     ----------
     path:
         The SVG file.
     width:
-        [unit] Longer side of the outline's bounding box.
+        [unit] Longer side of the outline's bounding box; if None, the size the file states.
     tolerance:
         [unit] Bound of the distance between drawing and outline, flattening and simplification
         together; 0.1 % of the width if None.
+    unit:
+        Unit of the outline.
 
     Raises
     ------
     FormatError:
-        Not a readable SVG drawing, no fill in it, several separate parts, or numbers out of range.
+        Not a readable SVG drawing, no fill in it, several separate parts, no size stated where
+        none is given, or numbers out of range.
     OutlineError:
         The outline has more vertices than an ``Outline`` may have.
     """
-    if not (math.isfinite(width) and width > 0.0):
-        raise FormatError(f"width is {width:g}; a finite number above 0 is needed")
+    if width is not None:
+        if not (math.isfinite(width) and width > 0.0):
+            raise FormatError(f"width is {width:g}; a finite number above 0 is needed")
+        _relative(tolerance, width)
+    try:
+        content, has_size = drawable(read_bytes(path, MAX_BYTES, "an SVG drawing"))
+        if width is None and not has_size:
+            raise FormatError("the drawing states no size in mm, cm or in; a width is needed")
+        shapes = list(drawn_shapes(content))
+        drawn = _size(_corners(shapes))
+        # A shape without area may reach further than the silhouette: measured once more.
+        drawn = _size(_part(shapes, DEFAULT_TOLERANCE * drawn))
+        wide = drawn * _PIXEL[unit] if width is None else width
+        relative = _relative(tolerance, wide)
+        region = _part(shapes, relative * drawn)
+        ring = simplified(_ring(region), _SIMPLIFY * relative * _size(region))
+        low_corner = ring.min(axis=0)
+        return Outline((ring - low_corner) * (wide / (ring.max(axis=0) - low_corner).max()))
+    except InputError as error:
+        raise type(error)(str(error) if str(path) in str(error) else f"{path}: {error}") from error
+
+
+def _relative(tolerance: float | None, width: float) -> float:
+    """The tolerance as a share of the width."""
     relative = DEFAULT_TOLERANCE if tolerance is None else tolerance / width
     low, high = TOLERANCE_RANGE
     if not low * (1 - 1e-9) <= relative <= high * (1 + 1e-9):
@@ -69,32 +102,23 @@ def read_svg(path: Path, width: float, tolerance: float | None = None) -> Outlin
             f"tolerance is {relative * width:g}; {low * width:g} to {high * width:g} is allowed "
             f"({low:g} to {high:g} of the width)"
         )
-    try:
-        ring = _silhouette(read_bytes(path, MAX_BYTES, "an SVG drawing"), relative)
-    except FormatError as error:
-        raise FormatError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
-    low_corner = ring.min(axis=0)
-    size = ring.max(axis=0) - low_corner
-    return Outline((ring - low_corner) * (width / size.max()))
+    return relative
 
 
-def _silhouette(content: bytes, relative: float) -> FloatArray:
-    """Simplified exterior ring in drawing coordinates, y upwards."""
-    shapes = list(drawn_shapes(drawable(content)))
+def _corners(shapes: Sequence[Shape]) -> shapely.MultiPoint:
+    """Ends and turning points of all curves: they have the bounding box of the drawing."""
     points = [curve.at(_ends(curve)) for _, rings in shapes for ring in rings for curve in ring]
     if not points:
         raise FormatError("nothing in the drawing is filled; a filled shape is needed")
     corners = np.vstack(points)
-    if not np.isfinite(corners).all() or np.abs(corners).max() > 1e12:
-        raise FormatError("the drawing has coordinates that are not finite or beyond 1e12")
-    region = _one_part(shapes, relative * float(np.ptp(corners, axis=0).max()))
-    # A shape without area may have reached further than the silhouette does.
-    region = _one_part(shapes, relative * _size(region))
-    ring = shapely.get_coordinates(region.exterior)[:-1]
-    return simplified(ring, _SIMPLIFY * relative * _size(region))
+    if not np.isfinite(corners).all() or np.abs(corners).max() > LARGEST_COORDINATE:
+        raise FormatError(
+            f"the drawing has coordinates that are not finite or beyond {LARGEST_COORDINATE:g}"
+        )
+    return shapely.MultiPoint(corners)
 
 
-def _one_part(shapes: Sequence[Shape], tolerance: float) -> shapely.Polygon:
+def _part(shapes: Sequence[Shape], tolerance: float) -> shapely.Polygon:
     """Union of all fills; parts smaller than the tolerance are dust."""
     if tolerance <= 0.0:
         raise FormatError("the filled shapes have no area")
@@ -129,7 +153,11 @@ def _polygons(region: shapely.Geometry) -> list[shapely.Polygon]:
     return [part for part in parts if isinstance(part, shapely.Polygon) and not part.is_empty]
 
 
-def _size(part: shapely.Polygon) -> float:
+def _ring(part: shapely.Polygon) -> FloatArray:
+    return shapely.get_coordinates(part.exterior)[:-1]
+
+
+def _size(part: shapely.Geometry) -> float:
     """Longer side of the bounding box."""
     x_low, y_low, x_high, y_high = part.bounds
     return max(x_high - x_low, y_high - y_low)

@@ -25,11 +25,14 @@ _SVG: Final = "http://www.w3.org/2000/svg"
 _XLINK_HREF: Final = "{http://www.w3.org/1999/xlink}href"
 _SHAPES: Final = {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"}
 _DRAWN: Final = _SHAPES | {"svg", "g", "a", "switch", "defs", "use", "symbol", "style"}
+_LENGTH: Final = re.compile(r"[\d.eE+-]+\s*(mm|cm|in|pt|pc|q)", re.IGNORECASE)
 _CUTTING: Final = ("clip-path", "mask")
 
 
-def drawable(content: bytes) -> bytes:
+def drawable(content: bytes) -> tuple[bytes, bool]:
     """The SVG document reduced to shapes, groups and what positions them.
+
+    Also whether it says how large it is: a width or height in a unit of length, not in pixels.
 
     Raises
     ------
@@ -41,7 +44,8 @@ def drawable(content: bytes) -> bytes:
         raise FormatError(f"the root element is <{_local(root.tag) or root.tag}>, not <svg>")
     _reduce(root)
     _bound_uses(root)
-    return tostring(root)
+    sizes = (root.get("width", ""), root.get("height", ""))
+    return tostring(root), any(_LENGTH.fullmatch(size.strip()) for size in sizes)
 
 
 def _parse(content: bytes) -> Element:

@@ -13,7 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from icage.kernels.compiled import compiled
-from icage.kernels.facet import MAX_BASE, MAX_ROWS, pass_value
+from icage.kernels.facet import MAX_BASE, MAX_ROWS, finger_on_segment, pass_value
+from icage.kernels.shrink import pivot
 from icage.kernels.storage import (
     grown_floats,
     grown_ints,
@@ -26,7 +27,9 @@ from icage.kernels.storage import (
 ESCAPED = 1
 CLOSED_IN = 0
 GAVE_UP = -1
-REACHED = 2
+
+SIGHT = 1e-11
+"""[diameter] What two fingers see of each other is decided with this much to spare."""
 
 TIE = 1e-12
 """[diameter] Passes this close to the running maximum are looked at as if they were it: pass
@@ -82,18 +85,19 @@ def birth(pieces, z, a, b, c, cap, worst, base, rows, tally):
 
 
 @compiled
-def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, goal):
-    """Search from the cell ``start`` (3,), born at ``floor``, until a pinched hand, a level or a goal.
+def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
+    """Search from the cell ``start`` (3,), born at ``floor``, until the hand escapes.
 
+    It has escaped when all fingers are in one piece, or when it can shrink to a point at once.
+    ``stop_above`` ends the search when every open pass is above that level, ``node_limit`` when
+    so many cells were entered.
 
-    ``goal`` is a sorted array of cell keys that end the search as an escape does (empty: none);
-    ``stop_above`` ends it when every open pass is above that level.
-
-    Returns (outcome, level, nodes, node_level, edges, edge_value, records, tally, keys, values):
-    nodes (k, 4) = pieces a, b, c and the edge that led here (-1 at the start); node_level (k, 1)
-    running maximum at entry; edges (e, 5) = from node, to node (-1 never visited), finger, slot,
-    unused; edge_value (e, 3) = sigma, w_x, w_y; records (r, 3) = level of a new maximum, birth of
-    the cell behind it, its node; keys, values: the hash table from cell key to node.
+    Returns (outcome, level, standing, nodes, node_level, edges, edge_value, records, tally, keys,
+    values): standing the finger that the others shrink to (-1: none needed); nodes (k, 4) =
+    pieces a, b, c and the edge that led here (-1 at the start); node_level (k,) running maximum at
+    entry; edges (e, 5) = from node, to node (-1 never visited), finger, slot, key of the cell it
+    leads to; edge_value (e, 3) = sigma, w_x, w_y; records (r, 3) = level at the running maximum,
+    birth of the cell behind it, its node; keys, values: the hash table from cell key to node.
     """
     m = len(pieces.ptr) - 1
     base = np.empty((MAX_BASE, 5))
@@ -115,6 +119,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, goal):
     level = floor
     tie = TIE * pieces.scale
     outcome = CLOSED_IN
+    standing = -1
     cell = np.empty(3, np.int64)
     cell[:] = start
     via = -1
@@ -139,10 +144,22 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, goal):
         if cell[0] == cell[1] and cell[1] == cell[2]:
             outcome = ESCAPED
             break
-        if len(goal) > 0:
-            to = np.searchsorted(goal, key)
-            if to < len(goal) and goal[to] == key:
-                outcome = REACHED
+        if via >= 0:
+            finger, slot = edges[via, 2], edges[via, 3]
+            piece = nodes[edges[via, 0], finger]
+            t = slot + 1 if slot + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
+            j = (finger + 1) % 3
+            k = (finger + 2) % 3
+            wx, wy = edge_value[via, 1], edge_value[via, 2]
+            xa, ya, xb, yb = finger_on_segment(
+                pieces, z, finger, pieces.slot_vertex[slot], pieces.slot_vertex[t],
+                j, cell[j], k, cell[k], wx, wy, base,
+            )  # fmt: skip
+            dx = 0.5 * (xa + xb) - wx * z[finger, 0] + wy * z[finger, 1]
+            dy = 0.5 * (ya + yb) - wx * z[finger, 1] - wy * z[finger, 0]
+            standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale)
+            if standing >= 0:
+                outcome = ESCAPED
                 break
         if n_nodes > node_limit:
             outcome = GAVE_UP
@@ -241,6 +258,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, goal):
     return (
         outcome,
         level,
+        standing,
         nodes[:n_nodes],
         node_level[:n_nodes, 0],
         edges[:n_edges],

@@ -1,0 +1,71 @@
+"""Can a hand shrink to a point at once, one finger standing still? Then it has escaped.
+
+The other two fingers move straight to the one that stands, and sigma only falls. Asking this of
+every configuration that the search passes spares it the long way down to a pinched hand outside:
+sigma_max is the same, for the search never lifts its level while anything lower is open. The test
+is conservative: what it cannot decide to within ``tol`` it leaves to the search. Our own.
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+
+from icage.kernels.compiled import compiled
+
+
+@compiled
+def sees(pieces, ux, uy, vx, vy, tol):
+    """Whether the open segment from u to v stays outside the object (both ends are outside)."""
+    sx = vx - ux
+    sy = vy - uy
+    length = math.hypot(sx, sy)
+    if length <= tol:
+        return True
+    for k in range(len(pieces.wall_from)):
+        p = pieces.wall_from[k]
+        q = pieces.wall_to[k]
+        px = pieces.x[p]
+        py = pieces.y[p]
+        ex = pieces.x[q] - px
+        ey = pieces.y[q] - py
+        edge = math.hypot(ex, ey)
+        # the free side of a wall is on its left
+        du = (ex * (uy - py) - ey * (ux - px)) / edge
+        dv = (ex * (vy - py) - ey * (vx - px)) / edge
+        if (du > tol and dv > tol) or (du < -tol and dv < -tol):
+            continue
+        sp = (sx * (py - uy) - sy * (px - ux)) / length
+        sq = (sx * (pieces.y[q] - uy) - sy * (pieces.x[q] - ux)) / length
+        if (sp > tol and sq > tol) or (sp < -tol and sq < -tol):
+            continue
+        if abs(du) <= tol:
+            along = ((ux - px) * ex + (uy - py) * ey) / edge
+            if -tol <= along <= edge + tol and dv >= -tol:
+                continue
+        if abs(dv) <= tol:
+            along = ((vx - px) * ex + (vy - py) * ey) / edge
+            if -tol <= along <= edge + tol and du >= -tol:
+                continue
+        return False
+    return True
+
+
+@compiled
+def pivot(pieces, z, dx, dy, wx, wy, tol):
+    """A finger (0..2) that sees both others from where the hand stands, or -1."""
+    x0 = dx
+    y0 = dy
+    x1 = dx + wx * z[1, 0] - wy * z[1, 1]
+    y1 = dy + wx * z[1, 1] + wy * z[1, 0]
+    x2 = dx + wx * z[2, 0] - wy * z[2, 1]
+    y2 = dy + wx * z[2, 1] + wy * z[2, 0]
+    a = sees(pieces, x0, y0, x1, y1, tol)
+    b = sees(pieces, x1, y1, x2, y2, tol)
+    if a and b:
+        return 1
+    if not a and not b:
+        return -1
+    if not sees(pieces, x2, y2, x0, y0, tol):
+        return -1
+    return 0 if a else 2
