@@ -31,19 +31,17 @@ def find_object(text: str, width: float | None = None, unit: str | None = None) 
     text:
         A path ``*.svg`` or ``*.json``, or a shipped object's name.
     width:
-        [unit] Longer side of its bounding box; needed for a drawing, for drawings only.
+        [unit] Longer side of its bounding box, for drawings only; if None, the size they state.
     unit:
-        Of the width; "m" if None.
+        Unit of a drawing's outline; "m" if None.
     """
     if text in object_names() and not Path(text).is_file():
         path = outline_path(text)
     else:
         path = _given(text)
     if path.suffix.lower() == ".svg":
-        if width is None:
-            raise InputError(f"{path} has no size of its own; --width is needed")
-        outline = read_svg(path, width)
-        return Object(path.stem, parse_unit("m" if unit is None else unit), outline, 0.0)
+        measure = parse_unit("m" if unit is None else unit)
+        return Object(path.stem, measure, read_svg(path, width, unit=measure), 0.0)
     if width is not None or unit is not None:
         raise InputError(f"--width and --unit are for drawings (*.svg); {path} has its own")
     return read_object(path)

@@ -18,7 +18,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("drawing", metavar="DRAWING", help="SVG file")
     parser.add_argument(
-        "--width", type=positive, required=True, help="longer side of the bounding box, in UNIT"
+        "--width",
+        type=positive,
+        help="longer side of the bounding box, in UNIT (the size the drawing states, if any)",
     )
     parser.add_argument(
         "--tolerance",
@@ -35,19 +37,21 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.json_out import write_json
     from icage.formats.case_json import FORMAT
-    from icage.formats.svg import DEFAULT_TOLERANCE, read_svg
+    from icage.formats.svg import read_svg
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)
-    tolerance = DEFAULT_TOLERANCE * args.width if args.tolerance is None else args.tolerance
-    outline = read_svg(path, args.width, tolerance)
-    command = f"icage outline {path.name} --width {args.width:g} --tolerance {tolerance:g}"
+    outline = read_svg(path, args.width, args.tolerance, args.unit)
+    command = f"icage outline {path.name} --unit {args.unit}"
+    for option in ("width", "tolerance"):
+        if getattr(args, option) is not None:
+            command += f" --{option} {getattr(args, option):g}"
     document = {
         "format": FORMAT,
         "name": path.stem,
         "unit": args.unit,
         "outline": {"vertices": outline.vertices},
-        "made_by": f"{command} --unit {args.unit}",
+        "made_by": command,
     }
     if args.json is not None:
         write_json(document, args.json)

@@ -157,7 +157,7 @@ def _ring(part: shapely.Polygon) -> FloatArray:
     return shapely.get_coordinates(part.exterior)[:-1]
 
 
-def _size(part: shapely.Geometry) -> float:
+def _size(part: shapely.Polygon | shapely.MultiPoint) -> float:
     """Longer side of the bounding box."""
     x_low, y_low, x_high, y_high = part.bounds
     return max(x_high - x_low, y_high - y_low)

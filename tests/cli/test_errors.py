@@ -81,6 +81,7 @@ BAD: dict[str, tuple[Any, str]] = {
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "empty.svg").write_text(drawing(""))
+    (tmp_path / "sizeless.svg").write_text(drawing('<circle r="1"/>', 'width="20px"'))
     (tmp_path / "bomb.svg").write_text(
         '<!DOCTYPE svg [<!ENTITY a "aaaa">]><svg xmlns="http://www.w3.org/2000/svg">&a;</svg>'
     )
@@ -132,7 +133,7 @@ def test_bad_cases(kind: str, folder: Path, square: dict[str, Any], capsys: Any)
         (("outline", "L", "--width", "2"), "not"),
         (("outline", "none.svg", "--width", "0"), "--width: '0' is not above 0"),
         (("outline", "none.svg", "--width", "nan"), "not a finite number"),
-        (("outline", "none.svg"), "--width"),
+        (("outline", "sizeless.svg"), "states no size in mm, cm or in; a width is needed"),
         (("outline", "none.svg", "--width", "2"), "none.svg does not exist"),
         (("outline", "none.svg", "--width", "2", "--unit", "inch"), "invalid choice: 'inch'"),
     ],

@@ -210,7 +210,7 @@ def test_an_outline_from_a_drawing(square: dict[str, Any], tmp_path: Path):
 @pytest.mark.parametrize(
     ("outline", "message"),
     [
-        ({"file": "box.svg"}, "outline has no key 'width'"),
+        ({"file": "box.svg"}, "states no size in mm, cm or in; a width is needed"),
         ({"file": "box.svg", "width": "2"}, 'outline.width is "2"'),
         ({"file": "box.svg", "width": -2}, "width is -2"),
         ({"file": "box.svg", "width": 2, "tolerance": None}, "outline.tolerance is null"),

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from icage.errors import FormatError, InputError
-from icage.formats.svg import read_svg
+from icage.formats.svg import Unit, read_svg
 from tests.formats.drawings import drawing, ellipse, hausdorff, placed, read
 
 TRIANGLE = '<path d="M0 0 L40 0 L40 10 Z"/>'
@@ -148,6 +148,22 @@ def test_a_view_box_changes_nothing_but_the_size(tmp_path: Path):
     assert boxed.vertices == pytest.approx(plain.vertices, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("attributes", "unit", "wide"),
+    [
+        ('width="30mm" height="90mm" viewBox="0 0 90 270"', "mm", 40 / 3),
+        ('width="3cm" viewBox="0 0 90 90" height="3cm"', "cm", 4 / 3),
+        ('width="1in" height="1in" viewBox="0 0 80 80"', "m", 0.0127),
+        ('width="72pt" height="72pt"', "mm", 40 * 25.4 / 96),
+    ],
+)
+def test_a_size_the_drawing_states(tmp_path: Path, attributes: str, unit: Unit, wide: float):
+    path = tmp_path / "sized.svg"
+    path.write_text(drawing(TRIANGLE, attributes))
+    assert max(read_svg(path, unit=unit).polygon.bounds) == pytest.approx(wide)
+    assert max(read_svg(path, 7.0, unit=unit).polygon.bounds) == pytest.approx(7.0)
+
+
 def test_used_definitions_are_drawn_where_they_are_used(tmp_path: Path):
     body = (
         '<defs><rect id="bar" width="10" height="2"/></defs>'
@@ -250,7 +266,7 @@ REPEATED = "".join(f'<g id="u{k}">' + f'<use href="#u{k - 1}"/>' * 10 + "</g>" f
         (drawing('<path d="M0 0L5 5"/>').encode(), "no area"),
         (drawing('<path d="M0 0L5"/>').encode(), "cannot be read|no area|nothing"),
         (drawing('<rect width="nan" height="3"/>').encode(), "cannot be read|finite|nothing"),
-        (drawing('<rect width="1e300" height="1e300"/>').encode(), "1e12"),
+        (drawing('<rect width="1e300" height="1e300"/>').encode(), "finite or beyond"),
         (drawing("<g>" * 200 + "</g>" * 200).encode(), "100 nested"),
         (drawing("<g/>" * 30_000).encode(), "20000 elements"),
         (drawing(f'<g id="u0"><rect width="1" height="1"/></g>{REPEATED}').encode(), "repeats"),
