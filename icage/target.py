@@ -64,7 +64,12 @@ def _slot_end(pieces: Pieces) -> IntArray:
 
 def cells_near(terrain: Terrain, at: Configuration, reach: float) -> IntArray:
     """All cells (k, 3) whose pieces come within ``reach`` of the fingers."""
-    near = [pieces_near(terrain.pieces, complex(f), reach) for f in terrain.fingers(at)]
+    near: list[IntArray] = []
+    for finger in terrain.fingers(at):
+        found = pieces_near(terrain.pieces, complex(finger), reach)
+        if not len(found):  # a configuration solved in doubles may sit this little inside a wall
+            found = pieces_near(terrain.pieces, complex(finger), 100.0 * reach)
+        near.append(found)
     if np.prod([len(n) for n in near], dtype=float) > _MAX_CELLS:
         near = [n[:27] for n in near]
     return np.array(list(product(*near)), dtype=np.int64).reshape(-1, 3)

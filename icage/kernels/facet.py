@@ -248,12 +248,15 @@ def finger_on_segment(pieces, z, i, p, q, j, piece_j, k, piece_k, wx, wy, base):
     for a in range(n):
         rest = base[a, 3] - base[a, 0] * wx - base[a, 1] * wy
         h = base[a, 2]
-        if abs(h) * length < 16.0 * base[a, 4]:
-            continue  # parallel to the segment: tau cannot matter, and rest / h is only noise
+        # give every bound its own rounding error: one from a nearly parallel edge is good to
+        # little along the segment, and must not push a finger through an edge that is not
+        doubt = 4.0 * base[a, 4]
+        if abs(h) * length < 4.0 * doubt:
+            continue
         if h > 0.0:
-            lo = max(lo, min(rest / h, length))
+            lo = max(lo, min((rest - doubt) / h, length))
         elif h < 0.0:
-            hi = min(hi, max(rest / h, 0.0))
+            hi = min(hi, max((rest - doubt) / h, 0.0))
     if lo > hi:
         lo = 0.5 * (lo + hi)
         hi = lo

@@ -105,7 +105,7 @@ def _certified(rows, n, worst, wx, wy, first, second):
         mult_2 = (rows[first, 0] * uy - rows[first, 1] * ux) / det
         below = abs(mult_1) * rows[first, 3] + abs(mult_2) * rows[second, 3]
         shift = (rows[first, 3] + rows[second, 3]) / abs(det)
-    if below > worst or shift > 1e3 * worst:
+    if below > worst or shift > 10.0 * worst:
         return UNSURE
     widest = 0.0
     narrowest = 0.0
