@@ -23,7 +23,7 @@ class SimConfig:
     Examples
     --------
     >>> SimConfig().free_speed
-    0.4
+    0.5
     """
 
     time_step: float = 1e-3
@@ -34,8 +34,8 @@ class SimConfig:
     3 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3 / s 0.7e-3; the
     tails of three-edge grasps grow longer in the same ratio."""
 
-    finger_damping: float = 750.0
-    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.4 / s."""
+    finger_damping: float = 600.0
+    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.5 / s."""
 
     object_damping: float = 100.0
     """[mass / s] A viscous table: the object forgets its speed within 10 ms, so that inertia does

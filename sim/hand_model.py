@@ -14,6 +14,7 @@ would be a differential and lose the shape; the linkage alone would not know of 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -73,7 +74,7 @@ class HandKinematics:
     @property
     def spread(self) -> float:
         """Root of sum L_k^2: turns sigma into a size that no relabelling of fingers changes."""
-        return float(np.linalg.norm(self.lengths))
+        return math.hypot(*self.lengths.tolist())
 
     @property
     def tendon_coefficients(self) -> FloatArray:

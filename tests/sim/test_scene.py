@@ -1,0 +1,112 @@
+"""The object's moments, the border between frames, and laws every compiled scene obeys."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from icage.hand import HandShape
+from icage.outline import Outline
+from sim.config import SimConfig
+from sim.object_model import NormalObject, extrude, polar_moment
+from sim.scene import Scene
+from tests.sim.grasps import KnownGrasp, case_outline, l_shape, t_shape, triangle
+
+GRASPS = [t_shape(), l_shape(), triangle()]
+SIZES = {
+    "nbody": "body", "njnt": "joint", "ngeom": "geom", "nsite": "site", "ncam": "camera",
+    "nlight": "light", "nmesh": "mesh", "ntendon": "tendon", "nu": "actuator", "neq": "equality",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("grasp", GRASPS)
+@pytest.mark.parametrize("looks", [False, True])
+def test_every_element_is_named_and_nothing_warns(grasp: KnownGrasp, looks: bool) -> None:
+    model = grasp.scene().spec(looks).compile()
+    for size, kind in SIZES.items():
+        for k in range(getattr(model, size)):
+            object_type = getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
+            assert mujoco.mj_id2name(model, object_type, k), f"{kind} {k} has no name"
+    assert model.nu == 1
+    assert (model.geom_margin == 0).all()
+    touching = model.geom_contype > 0
+    assert (model.geom_condim[touching] == 1).all()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 5)
+    assert not any(warning.number for warning in data.warning)
+
+
+def test_moments_of_a_rectangle() -> None:
+    a, b = 3.0, 1.0
+    box = np.array([[0, 0], [a, 0], [a, b], [0, b]]) - [a / 2, b / 2]
+    assert polar_moment(box) == pytest.approx(a * b * (a * a + b * b) / 12.0, rel=1e-14)
+
+
+def test_moment_agrees_with_a_monte_carlo_free_sum_over_triangles() -> None:
+    outline, _, _ = case_outline("handsaw_best")
+    thing = NormalObject(outline)
+    triangles = shapely.get_parts(
+        shapely.constrained_delaunay_triangles(shapely.Polygon(thing.vertices))
+    )
+    total = 0.0
+    for part in triangles:
+        a, b, c = shapely.get_coordinates(part)[:3]
+        middles = np.array([(a + b) / 2, (b + c) / 2, (c + a) / 2])
+        total += part.area * (middles**2).sum() / 3.0  # exact for squares
+    assert thing.gyration_squared * shapely.Polygon(thing.vertices).area == pytest.approx(total)
+
+
+def test_compiled_object_has_the_stated_inertia() -> None:
+    scene = l_shape().scene()
+    body = scene.model.body("object")
+    assert body.mass[0] == 1.0
+    np.testing.assert_allclose(body.inertia, scene.thing.gyration_squared, rtol=1e-12)
+    np.testing.assert_allclose(body.ipos, 0.0, atol=1e-15)
+
+
+def test_prism_has_the_right_volume() -> None:
+    piece = np.array([[0.0, 0.0], [1.0, 0.0], [1.2, 0.7], [0.4, 1.0]])
+    prism = extrude(piece, 0.05)
+    assert prism.is_watertight
+    assert prism.volume == pytest.approx(0.1 * shapely.Polygon(piece).area, rel=1e-12)
+    np.testing.assert_allclose(prism.bounds[:, 2], [-0.05, 0.05])
+
+
+def test_slivers_thinner_than_the_engine_can_tell_do_not_stop_it() -> None:
+    outline = Outline([[0, 0], [1, 1e-13], [2, 0], [2, 1], [1, 1 - 1e-12], [0, 1]])
+    scene = Scene(outline, HandShape.from_angles_deg(60, 120), 0.05, SimConfig())
+    assert scene.model.nmesh >= 1
+
+
+placements = st.tuples(
+    st.floats(-3, 3), st.floats(-3, 3), st.floats(-7, 7), st.floats(0.01, 5)
+).map(lambda row: np.array([row]))
+
+
+@settings(max_examples=60, deadline=None)
+@given(placements)
+def test_placements_survive_the_border(row: np.ndarray) -> None:
+    scene = _L_SCENE
+    np.testing.assert_allclose(scene.placements(scene.start_positions(row)), row, atol=1e-12)
+
+
+@settings(max_examples=40, deadline=None)
+@given(placements)
+def test_engine_and_planner_agree_where_the_fingers_stand(row: np.ndarray) -> None:
+    scene = _L_SCENE
+    data = mujoco.MjData(scene.model)
+    data.qpos[:] = scene.start_positions(row)[0]
+    mujoco.mj_kinematics(scene.model, data)
+    body = data.body("object")
+    turn = body.xmat.reshape(3, 3)
+    seen = np.array([turn.T @ (data.body(f"finger_{k}").xpos - body.xpos) for k in (1, 2, 3)])
+    in_case = seen[:, :2] * scene.thing.unit + scene.thing.centre
+    np.testing.assert_allclose(in_case, scene.hand.fingers(row[0]), atol=1e-11)
+    np.testing.assert_allclose(seen[:, 2], 0.0, atol=1e-15)
+
+
+_L_SCENE = l_shape().scene()
