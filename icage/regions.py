@@ -20,7 +20,8 @@ from icage.kernels.region import all_sandwiches
 from icage.solver import Configuration, Terrain
 from icage.tolerance import REGION_LEVEL
 
-_ROUGH = 0.02
+_ROUGH = 3e-6
+"""[diameter^2] First try at how much area a cell's inner and outer polygon may differ by."""
 _REFINEMENTS = 6
 _GRID = 1e-9
 """[diameter] Neighbouring cells meet on a common edge: unions are noded on this grid."""

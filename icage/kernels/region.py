@@ -42,7 +42,7 @@ def _rows(pieces, z, i, finger, piece, rows, n):
 
 @compiled
 def cut(rows, n, x, y, level):
-    """Excess and gradient (e, g_x, g_y) of a line with e + g . (q - p) <= 0 on the whole set.
+    """A line with e + g . (q - p) <= 0 on the whole set: (e, g_x, g_y, sum of multipliers).
 
     e <= 0 means that p = (x, y) itself is in the set (of the other two fingers' constraints).
     """
@@ -75,7 +75,7 @@ def cut(rows, n, x, y, level):
                     hi = b / a
                     at_hi = q
             elif b > 1e-13 * level:
-                return b, -rows[r, 2] - rows[q, 2], -rows[r, 3] - rows[q, 3]
+                return b, -rows[r, 2] - rows[q, 2], -rows[r, 3] - rows[q, 3], 2.0
         if lo > hi:
             a_lo = rows[at_lo, 1] * gx - rows[at_lo, 0] * gy
             a_hi = rows[at_hi, 1] * gx - rows[at_hi, 0] * gy
@@ -90,7 +90,8 @@ def cut(rows, n, x, y, level):
             hy = -(m_r * rows[r, 3] + m_lo * rows[at_lo, 3] + m_hi * rows[at_hi, 3])
             e = m_r * rows[r, 4] + m_lo * rows[at_lo, 4] + m_hi * rows[at_hi, 4]
             # outside for certain; its excess may round to nothing where three rows just meet
-            return max(e + hx * x + hy * y, 1e-16 * level), hx, hy
+            excess = max(e + hx * x + hy * y, 1e-16 * level)
+            return excess, hx, hy, m_r + m_lo + m_hi
         s = 0.0
         first = r
         second = -1
@@ -104,7 +105,7 @@ def cut(rows, n, x, y, level):
         wy = by + s * gx
     norm = math.hypot(wx, wy)
     if norm <= level or first < 0:
-        return norm - level, 0.0, 0.0
+        return norm - level, 0.0, 0.0, 0.0
     m_1 = 1.0
     m_2 = 0.0
     if second >= 0:
@@ -116,34 +117,34 @@ def cut(rows, n, x, y, level):
     if second >= 0:
         hx -= m_2 * rows[second, 2]
         hy -= m_2 * rows[second, 3]
-    return norm - level, hx, hy
+    return norm - level, hx, hy, m_1 + m_2
 
 
 @compiled
 def _shoot(rows, n, x0, y0, x1, y1, level, tiny):
     """Boundary point on the way from an inside point to (x1, y1), and the last cut.
 
-    Returns (x, y, inside, e, g_x, g_y, c_x, c_y): ``inside`` if (x1, y1) is in the set; the cut is
-    e + g . (q - c) <= 0.
+    Returns (x, y, inside, e, g_x, g_y, c_x, c_y, weight): ``inside`` if (x1, y1) is in the set; the
+    cut is e + g . (q - c) <= 0, ``weight`` the sum of its multipliers.
     """
     dx = x1 - x0
     dy = y1 - y0
     length = math.hypot(dx, dy)
     t = 1.0
-    ce, cgx, cgy, ccx, ccy = 0.0, 0.0, 0.0, 0.0, 0.0
+    ce, cgx, cgy, ccx, ccy, cw = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     inside = True
     for _ in range(60):
         x = x0 + t * dx
         y = y0 + t * dy
-        e, gx, gy = cut(rows, n, x, y, level)
+        e, gx, gy, weight = cut(rows, n, x, y, level)
         if e <= 0.0:
             break
-        inside = False
-        ce, cgx, cgy, ccx, ccy = e, gx, gy, x, y
         slope = gx * dx + gy * dy
-        if slope <= 0.0:
+        if slope <= 0.0:  # only rounding: the cut runs along the ray, from where it starts
             t = 0.0
             break
+        inside = False
+        ce, cgx, cgy, ccx, ccy, cw = e, gx, gy, x, y, weight
         # a step too short to count may only mean that three rows are about to meet, with another
         # one still violated: move on by a little and look again, until a point is seen inside
         t = max(0.0, t - max(e / slope, tiny / length))
@@ -151,14 +152,17 @@ def _shoot(rows, n, x0, y0, x1, y1, level, tiny):
             break
     else:
         t = 0.0
-    return x0 + t * dx, y0 + t * dy, inside, ce, cgx, cgy, ccx, ccy
+    return x0 + t * dx, y0 + t * dy, inside, ce, cgx, cgy, ccx, ccy, cw
 
 
 @compiled
-def _clip(px, py, done, n, e, gx, gy, cx, cy, qx, qy, qdone):
+def _clip(px, py, done, n, e, gx, gy, cx, cy, spare, qx, qy, qdone):
     """Keep the part of a convex polygon with e + g . (q - c) <= 0; returns its corner count."""
     m = 0
+    e -= spare  # rounding of a line from multipliers that large
     for a in range(n):
+        if m > CORNERS - 3:
+            break
         b = a + 1 if a + 1 < n else 0
         va = e + gx * (px[a] - cx) + gy * (py[a] - cy)
         vb = e + gx * (px[b] - cx) + gy * (py[b] - cy)
@@ -205,6 +209,15 @@ def _hull(hx, hy, n, ox, oy):
 
 
 @compiled
+def _area(x, y, n):
+    """Area of a counterclockwise polygon."""
+    total = 0.0
+    for a in range(1, n - 1):
+        total += (x[a] - x[0]) * (y[a + 1] - y[0]) - (x[a + 1] - x[0]) * (y[a] - y[0])
+    return 0.5 * total
+
+
+@compiled
 def _beyond(x, y, hx, hy, n):
     """Area that a point adds to the hull (hx, hy)."""
     total = 0.0
@@ -220,7 +233,7 @@ def _beyond(x, y, hx, hy, n):
 def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
     """Inner and outer polygon of finger i's positions in one cell below ``level``.
 
-    (x0, y0) is a position in the set; corners that add less than the area ``enough`` are left.
+    (x0, y0) is a position in the set; refined until the areas differ by less than ``enough``.
     Fills ``inner`` (2, CORNERS) and ``outer``; returns their corner counts.
     """
     j = (i + 1) % 3
@@ -229,6 +242,7 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
     n = _rows(pieces, z, i, j, cell[j], rows, 0)
     n = _rows(pieces, z, i, k, cell[k], rows, n)
     tiny = 1e-11 * pieces.scale
+    # an offset of a few rounding errors of the rows, per unit of their multipliers
     px = outer[0]
     py = outer[1]
     done = np.zeros(CORNERS, np.bool_)
@@ -250,7 +264,10 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
     hx[0], hy[0] = x0, y0
     cx = x0
     cy = y0
-    for turn in range(_ROUNDS):
+    all_corners = True
+    for _ in range(_ROUNDS):
+        if _area(px, py, m) - _area(hx, hy, nh) < enough:
+            break
         before = m
         todo = 0
         tx = px[:before].copy()
@@ -259,35 +276,55 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
         for a in range(before):
             if skip[a] or m > CORNERS - 8 or nb > CORNERS - 8:
                 continue
-            if nh > 2 and _beyond(tx[a], ty[a], hx, hy, nh) < enough:
+            if not all_corners and _beyond(tx[a], ty[a], hx, hy, nh) < 0.25 * enough:
                 continue
             todo += 1
-            x, y, inside, e, gx, gy, ex, ey = _shoot(rows, n, cx, cy, tx[a], ty[a], level, tiny)
-            bx[nb], by[nb] = x, y
-            nb += 1
-            if inside:
-                for b in range(m):
-                    if px[b] == tx[a] and py[b] == ty[a]:
-                        done[b] = True
-            else:
-                m = _clip(px, py, done, m, e, gx, gy, ex, ey, qx, qy, qdone)
+            e, gx, gy, weight = cut(rows, n, tx[a], ty[a], level)
+            if e > 0.0:  # the corner's own cut takes it off for certain
+                m = _clip(
+                    px, py, done, m, e, gx, gy, tx[a], ty[a], 1e-3 * tiny * weight, qx, qy, qdone
+                )
                 px[:m] = qx[:m]
                 py[:m] = qy[:m]
                 done[:m] = qdone[:m]
-        if todo == 0 or m < 3:
+            x, y, inside, ce, gx, gy, ex, ey, weight = _shoot(
+                rows, n, cx, cy, tx[a], ty[a], level, tiny
+            )
+            bx[nb], by[nb] = x, y
+            nb += 1
+            if e <= 0.0:
+                for b in range(m):
+                    if px[b] == tx[a] and py[b] == ty[a]:
+                        done[b] = True
+            elif not inside:
+                m = _clip(px, py, done, m, ce, gx, gy, ex, ey, 1e-3 * tiny * weight, qx, qy, qdone)
+                px[:m] = qx[:m]
+                py[:m] = qy[:m]
+                done[:m] = qdone[:m]
+        if m < 3 or (todo == 0 and all_corners):
             break
+        # far corners of a thin set add little to its hull one by one: if none seems worth it, take
+        # them all
+        all_corners = todo == 0 or nh < 3
         nh = _hull(bx, by, nb, qx, qy)
         hx[:nh] = qx[:nh]
         hy[:nh] = qy[:nh]
         bx[:nh] = qx[:nh]
         by[:nh] = qy[:nh]
         nb = nh
-        if nh > 2:
-            cx = 0.0
-            cy = 0.0
-            for a in range(nh):
-                cx += hx[a] / nh
-                cy += hy[a] / nh
+        # shoot from well inside: the middle of the outer polygon, as soon as it is in the set (the
+        # position given may lie on the boundary, where rays along it see nothing)
+        ox = px[:m].mean()
+        oy = py[:m].mean()
+        e, gx, gy, weight = cut(rows, n, ox, oy, level)
+        if e <= 0.0:
+            cx = ox
+            cy = oy
+            bx[nb], by[nb] = cx, cy
+            nb += 1
+        elif nh > 2:
+            cx = hx[:nh].mean()
+            cy = hy[:nh].mean()
     return nh, m
 
 
