@@ -1,0 +1,1 @@
+"""Independent checkers of the planner: nothing in here imports icage."""
