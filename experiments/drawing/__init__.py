@@ -1,0 +1,1 @@
+"""What figures and videos share: colours, shapes, labels, a fast canvas."""
