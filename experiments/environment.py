@@ -37,11 +37,13 @@ def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     constraints = folder / "lower-bounds.txt" if lowest else ROOT / "constraints.txt"
     wanted = lower_bounds() if lowest else constraints.read_text(encoding="utf-8")
-    state = "\n".join([extras, wanted, (ROOT / "pyproject.toml").read_text(encoding="utf-8")])
+    state = wanted + (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     digest = hashlib.sha256(state.encode()).hexdigest()
     stamp = folder / _STAMP
-    if python.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == digest:
+    made_of, had = _read_stamp(stamp)
+    if python.exists() and made_of == digest and extras in ("", had):
         return python
+    extras = extras or had  # whoever needs less is served by more, and takes nothing away
     print(f"icage: preparing the environment {name}", file=sys.stderr, flush=True)
     if not python.exists():
         _create(folder)
@@ -50,7 +52,7 @@ def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
         constraints.write_text(wanted, encoding="utf-8")
     target = ["-c", str(constraints), "-e", f"{ROOT}{extras}"]
     subprocess.run([*_pip(python), "install", "--quiet", *target], check=True, cwd=ROOT)
-    stamp.write_text(digest, encoding="utf-8")
+    stamp.write_text(f"{digest} {extras}", encoding="utf-8")
     return python
 
 
@@ -61,6 +63,14 @@ def lower_bounds() -> str:
     needed = [*project["dependencies"], *project["optional-dependencies"]["test"]]
     bounds = [re.fullmatch(r"([\w.-]+)>=([\d.]+)(,.*)?", entry) for entry in needed]
     return "".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound)
+
+
+def _read_stamp(stamp: Path) -> tuple[str, str]:
+    """What the environment was made of (a digest), and with which extras; empty if unknown."""
+    if not stamp.exists():
+        return "", ""
+    digest, _, extras = stamp.read_text(encoding="utf-8").partition(" ")
+    return digest, extras
 
 
 def _create(folder: Path) -> None:

@@ -44,10 +44,12 @@ def test_an_environment_that_is_up_to_date_is_left_alone(tmp_path: Path, monkeyp
     environment(".venv", "[dev]")
     assert len(calls) == 1  # the installation; the folder was there
     environment(".venv", "[dev]")
+    environment(".venv")
     assert len(calls) == 1
     (tmp_path / "constraints.txt").write_text("numpy==2.4.7")
-    environment(".venv", "[dev]")
+    environment(".venv")
     assert len(calls) == 2
+    assert "[dev]" in str(calls[-1])  # what was there stays
 
 
 def test_an_environment_without_pip_is_served_by_this_pip(tmp_path: Path):
