@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-CASES = Path(__file__).resolve().parents[1] / "planner" / "cases"
+CASES = Path(__file__).resolve().parents[1] / "cases"
 
 
 @dataclass(frozen=True, slots=True)

@@ -137,16 +137,19 @@ def _curves_upwards(
     return float(np.linalg.eigvalsh(bend)[0]) > margin
 
 
-def opening_direction(ring: Ring, contacts: Floats, tol: float = 1e-9) -> Floats:
+def opening_direction(
+    ring: Ring, contacts: Floats, radius: float = 0.0, tol: float = 1e-9
+) -> Floats | None:
     """Direction in (d, w), (4,), that leaves every touched edge while sigma grows least.
 
-    Linear program: minimize w . dw subject to ``row . p >= |row|`` for every contact; a finger on
-    a convex vertex leaves along the bisector. Our own.
+    Linear program: minimize w . dw subject to ``row . p >= |normal|`` for every contact; a finger
+    on a convex vertex leaves along the bisector. None where the hand can neither open nor close
+    (an isolated configuration). Our own.
     """
     hand, q = unit_hand(contacts), configuration(contacts)
     rows: list[Floats] = []
     for k, point in enumerate(contacts):
-        found = touch(ring, point, 0.0, tol * ring.diameter)
+        found = touch(ring, point, radius, tol * ring.diameter)
         if found is None:
             continue
         one_sided = len(found.choices) == 1
@@ -160,7 +163,7 @@ def opening_direction(ring: Ring, contacts: Floats, tol: float = 1e-9) -> Floats
         A_ub=np.hstack([-a, a]), b_ub=-np.linalg.norm(a[:, :2], axis=1), method="highs",
     )  # fmt: skip
     if not answer.success:
-        raise ArithmeticError("the contacts cannot all be left at once")
+        return None
     return np.asarray(answer.x[:4] - answer.x[4:])
 
 

@@ -15,10 +15,13 @@ from numpy.random import Generator
 
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.polygons import FAMILIES
-from tests.oracles.statics import is_strict_minimum
+from tests.oracles.statics import is_strict_minimum, opening_direction
 
 CORNER_COUNTS = (0.25, 0.3, 0.35, 0.1)
 """Chances of 0, 1, 2, 3 fingers in concave corners."""
+
+LONGEST_STEP = 1e3
+"""[1] How far w must go for the fingers to be clear by one unit: more is as good as isolated."""
 
 FLATTEST = 0.02
 """[1] Smallest height over longest side of a hand we draw."""
@@ -64,7 +67,10 @@ def grasp_on(
         if points is None:
             continue
         points = np.roll(_counterclockwise(points), int(rng.integers(3)), axis=0)
-        if _fat_enough(points, radius) and is_strict_minimum(ring, points, radius):
+        if not (_fat_enough(points, radius) and is_strict_minimum(ring, points, radius)):
+            continue
+        step = opening_direction(ring, points, radius)
+        if step is not None and np.hypot(*step[2:]) < LONGEST_STEP:
             return points
     return None
 

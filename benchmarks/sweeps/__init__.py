@@ -1,0 +1,1 @@
+"""Large seeded sweeps that compare the planner with itself where it must not differ."""

@@ -1,0 +1,110 @@
+"""Run a seeded sweep over numbered targets in at most two processes and write its report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import platform
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+TOLERANCE = 1e-7
+"""[1] Two ways to the same level disagree if they differ by more than this (relative)."""
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What one target showed. ``opening`` = sigma_max / sigma_0 (None: never escapes, no minimum)."""
+
+    number: int
+    family: str
+    runs: int = 0
+    opening: float | None = None
+    verdict: str = "cage"
+    worst: float = 0.0
+    disagreements: list[str] = field(default_factory=list)
+    exceptions: list[str] = field(default_factory=list)
+
+    def add(self, what: str, difference: float) -> None:
+        """Note how much one more way to the same levels differs."""
+        self.runs += 1
+        if difference > TOLERANCE:
+            self.disagreements.append(f"{what}: {difference:.3g}")
+        else:
+            self.worst = max(self.worst, difference)
+
+
+Judge = Callable[[int, int], Outcome]
+"""(seed, number of the target) -> Outcome."""
+
+
+def options(description: str, count: int) -> argparse.ArgumentParser:
+    """The options that all sweeps share."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--count", type=int, default=count, help="targets (default %(default)s)")
+    parser.add_argument("--first", type=int, default=0, help="number of the first target")
+    parser.add_argument("--seed", type=int, default=2018)
+    parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
+    parser.add_argument("--json", type=Path, help="write the report here")
+    return parser
+
+
+def run(judge: Judge, chosen: argparse.Namespace) -> list[Outcome]:
+    """Outcomes of all targets, in order."""
+    numbers = range(chosen.first, chosen.first + chosen.count)
+    jobs = [(judge, chosen.seed, n) for n in numbers]
+    if chosen.processes == 1:
+        return [_call(job) for job in tqdm(jobs, mininterval=5.0)]
+    with multiprocessing.get_context("spawn").Pool(chosen.processes) as pool:
+        return list(tqdm(pool.imap(_call, jobs, chunksize=4), total=len(jobs), mininterval=5.0))
+
+
+def _call(job: tuple[Judge, int, int]) -> Outcome:
+    judge, seed, number = job
+    return judge(seed, number)
+
+
+def report(name: str, outcomes: list[Outcome], chosen: argparse.Namespace, began: float) -> int:
+    """Print and write what was found; the exit code is 1 if anything disagreed or failed."""
+    openings = [o.opening for o in outcomes if o.opening is not None]
+    wide = sum(x > 1.05 for x in openings) + sum(o.verdict == "never_escapes" for o in outcomes)
+    bad = [o for o in outcomes if o.disagreements]
+    failed = [o for o in outcomes if o.exceptions]
+    summary: dict[str, Any] = {
+        "format": "icage-sweep/1",
+        "sweep": name,
+        "command": f"python -m benchmarks.sweeps.{name} --count {chosen.count} "
+        f"--first {chosen.first} --seed {chosen.seed}",
+        "targets": len(outcomes),
+        "runs": sum(o.runs for o in outcomes),
+        "tolerance": TOLERANCE,
+        "targets_that_disagree": len(bad),
+        "exceptions": len(failed),
+        "worst_difference_below_tolerance": max((o.worst for o in outcomes), default=0.0),
+        "opening_above_1.05": wide,
+        "share_above_1.05": round(wide / max(1, len(outcomes)), 4),
+        "median_opening": round(float(np.median(openings)), 4) if openings else None,
+        "verdicts": dict(Counter(o.verdict for o in outcomes)),
+        "families": dict(sorted(Counter(o.family for o in outcomes).items())),
+        "seconds": round(time.perf_counter() - began, 1),
+        "processes": chosen.processes,
+        "versions": {
+            "python": platform.python_version(),
+            **{p: version(p) for p in ("numpy", "shapely", "numba")},
+        },
+        "details": [asdict(o) for o in (*bad, *failed)],
+    }
+    text = json.dumps(summary, indent=1)
+    if chosen.json:
+        chosen.json.write_text(text + "\n")
+    print(text)
+    return 1 if bad or failed else 0
