@@ -59,7 +59,7 @@ def test_every_grasp_is_documented_and_on_the_outline(name: str):
     for file in case_paths(name):
         case = read_case(file)  # checks the contacts
         assert case.outline.vertices.tolist() == outline.vertices.tolist()
-        assert f"cases/{file.name}" in readme
+        assert f"`{file.stem}`" in readme
     assert (outline_path(name).parent / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     assert (outline_path(name).parent / "LICENSE.txt").stat().st_size > 100
 
