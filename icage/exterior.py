@@ -45,7 +45,7 @@ class Pieces(NamedTuple):
     diameter: float
 
     @property
-    def count(self) -> int:
+    def total(self) -> int:
         """Number of pieces."""
         return len(self.ptr) - 1
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -83,7 +84,7 @@ def offsets(
 
 
 def _strips(outline: Outline, radius: float) -> list[shapely.Polygon]:
-    """A rectangle on the outside of every edge; its corners are the ends of the arcs, bit for bit."""
+    """A rectangle outside every edge; its corners are the ends of the arcs, bit for bit."""
     a = outline.vertices
     b = np.roll(a, -1, axis=0)
     side = b - a
@@ -99,7 +100,7 @@ def _split(
         {0.0, arc.turn, *(t for t in (_along(arc, x) for x in through) if t is not None)}
     )
     angles: list[float] = [0.0]
-    for low, high in zip(stops, stops[1:], strict=False):
+    for low, high in pairwise(stops):
         parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - 1e-9))
         angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
     at = arc.start + np.array(angles)
@@ -160,8 +161,8 @@ def check_disc_contacts(outline: Outline, radius: float, contacts: FloatArray) -
     """
     reach = CONTACT_OFF * outline.diameter
     points = shapely.points(contacts)
-    gap = shapely.distance(points, outline.polygon.exterior)
-    inside = shapely.contains_properly(outline.polygon, points)
+    gap = np.atleast_1d(shapely.distance(points, outline.polygon.exterior))
+    inside = np.atleast_1d(shapely.contains_properly(outline.polygon, points))
     for k in range(3):
         found = -float(gap[k]) if inside[k] else float(gap[k])
         if abs(found - radius) > reach:
@@ -177,7 +178,7 @@ def check_disc_contacts(outline: Outline, radius: float, contacts: FloatArray) -
                 f"at least 2 x {radius:.6g} is needed"
             )
     grown = offsets(outline, radius, 16).inner
-    swallowed = shapely.distance(points, grown.polygon.exterior)
+    swallowed = np.atleast_1d(shapely.distance(points, grown.polygon.exterior))
     for k in range(3):
         if swallowed[k] > 0.01 * radius + reach:
             raise GraspError(

@@ -55,7 +55,7 @@ class HandShape:
         if z_3.imag <= _FLATTEST * longest:
             raise HandError(
                 "the three fingers are collinear or coincident "
-                f"(height over longest side {z_3.imag / longest:.3g}; above {_FLATTEST:g} is needed)"
+                f"(height over longest side {z_3.imag / longest:.3g}; above {_FLATTEST:g} needed)"
             )
         object.__setattr__(self, "z_3", z_3)
         z = np.array([0.0, 1.0, z_3], dtype=np.complex128)
@@ -95,7 +95,7 @@ class HandShape:
 
     @property
     def phi(self) -> tuple[float, float]:
-        """(phi_1, phi_2), [rad]: directions from fingers 1 and 2 to finger 3. [Bunis2018, Def. 1]"""
+        """(phi_1, phi_2), [rad]: directions from fingers 1, 2 to finger 3. [Bunis2018, Def. 1]"""
         return cmath.phase(self.z_3), cmath.phase(self.z_3 - 1.0)
 
     @property

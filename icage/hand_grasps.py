@@ -38,9 +38,9 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
     """
     terrain = Terrain.around(outline, hand)
     pieces = terrain.pieces
-    if pieces.count > MOST_PIECES:
+    if pieces.total > MOST_PIECES:
         raise InputError(
-            f"the outline needs {pieces.count} pieces; up to {MOST_PIECES} are allowed here: "
+            f"the outline needs {pieces.total} pieces; up to {MOST_PIECES} are allowed here: "
             "simplify it"
         )
     size = pieces.diameter

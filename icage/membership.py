@@ -74,7 +74,7 @@ class EscapeLevels:
 
     def escapes(self, cell: IntArray, sigma: float) -> tuple[bool, float]:
         """Whether a hand in the cell escapes at sigma, and if not, at which level it does."""
-        m = self._terrain.pieces.count
+        m = self._terrain.pieces.total
         key = int((cell[0] * m + cell[1]) * m + cell[2])
         if self._at_most.get(key, np.inf) <= sigma:
             return True, 0.0
@@ -85,7 +85,7 @@ class EscapeLevels:
 
     def _remember(self, found: Search) -> None:
         """Cells entered before the last new maximum escape exactly there, later ones no later."""
-        m = self._terrain.pieces.count
+        m = self._terrain.pieces.total
         keys = (found.nodes[:, 0] * m + found.nodes[:, 1]) * m + found.nodes[:, 2]
         exact = found.node_level < found.level
         exact[0] = True
@@ -187,7 +187,7 @@ def _cells(work: CageWork, fingers: FloatArray, size: float) -> IntArray:
 
 def _inside_nodes(work: CageWork, cells: IntArray) -> IntArray:
     found = work.search
-    m = found.terrain.pieces.count
+    m = found.terrain.pieces.total
     return nodes_of(found.keys, found.values, cells, m, inside_cells(found))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -174,7 +175,8 @@ def _escape(found: Search) -> Puncture:
 
 def free_fingers(terrain: Terrain, contacts: FloatArray) -> tuple[int, ...]:
     """Fingers (of 1, 2, 3) that touch nothing."""
-    gap = shapely.distance(shapely.points(contacts), terrain.outline.polygon.exterior)
+    points = shapely.points(contacts)
+    gap = np.atleast_1d(shapely.distance(points, terrain.outline.polygon.exterior))
     return tuple(k + 1 for k in range(3) if gap[k] > FREE_FINGER * terrain.pieces.diameter)
 
 
@@ -185,7 +187,7 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
     points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
-    smallest = min(_least_norm(a.w, b.w) for a, b in zip(points, points[1:], strict=False))
+    smallest = min(_least_norm(a.w, b.w) for a, b in pairwise(points))
     rows = [found.terrain.placement(p) for p in points]
     # the last piece, or the finger that stands still, takes all three
     still = found.terrain.contacts(points[-1])[max(found.standing, 0)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.arrays import ComplexArray, FloatArray
+from icage.arrays import BoolArray, ComplexArray, FloatArray
 from icage.exterior import Pieces
 from icage.solver import Search
 
@@ -26,13 +26,13 @@ def _corners(pieces: Pieces, k: int) -> ComplexArray:
     return pieces.x[v] + 1j * pieces.y[v]
 
 
-def _holds(pieces: Pieces, k: int, points: ComplexArray) -> ComplexArray:
+def _holds(pieces: Pieces, k: int, points: ComplexArray) -> BoolArray:
     s = slice(int(pieces.ptr[k]), int(pieces.ptr[k + 1]))
     v = pieces.slot_vertex[s]
     gap: FloatArray = pieces.normal_x[s][:, None] * (
         points.real - pieces.x[v][:, None]
     ) + pieces.normal_y[s][:, None] * (points.imag - pieces.y[v][:, None])
-    return (gap >= -_INSIDE * pieces.diameter).all(axis=0)
+    return np.logical_and.reduce(gap >= -_INSIDE * pieces.diameter, axis=0)
 
 
 def _largest_in_cell(pieces: Pieces, z: ComplexArray, cell: list[int]) -> float:

@@ -74,7 +74,7 @@ class Terrain:
     def on_edge(
         self, cell: IntArray, finger: int, slot: int, wx: float, wy: float
     ) -> tuple[Configuration, Configuration]:
-        """The two ends of the configurations (one, unless a plateau) of a least sigma on an edge."""
+        """Both ends of the configurations (one, unless a plateau) of least sigma on an edge."""
         i, j, k = finger, (finger + 1) % 3, (finger + 2) % 3
         ptr, vertex = self.pieces.ptr, self.pieces.slot_vertex
         after = slot + 1 if slot + 1 < ptr[cell[i] + 1] else ptr[cell[i]]

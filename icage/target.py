@@ -146,7 +146,7 @@ def plateau_through(
     reach = SAME_POINT * size
     ends = [here, here]
     for side in range(2):
-        for _ in range(10 * terrain.pieces.count):
+        for _ in range(10 * terrain.pieces.total):
             best = ends[side]
             cells = cells_near(terrain, ends[side], reach)
             value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)

@@ -46,7 +46,7 @@ FREE_FINGER: Final = 1e-7
 """[diameter] A finger further than this from the outline touches nothing."""
 
 SIGMA_MAX_GAP: Final = 1e-4
-"""[1] Disc fingers: arcs are refined until sigma_max is bracketed this well (relative). [contract]"""
+"""[1] Disc fingers: arcs are refined until sigma_max is bracketed this well. [contract]"""
 
 SIGMA_FIRST_SPREAD: Final = 1e-3
 """[1] Disc fingers: sigma_first counts as converged if all resolutions agree to this. [contract]"""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 from icage.hand import HandShape
 from icage.outline import Outline
 
@@ -65,8 +65,8 @@ def refine(
     start = np.concatenate([contacts[0] - origin, side]) / size
     system = _System(features, hand, radius / size, origin, size)
     answer = minimize(
-        lambda v: 0.5 * float(v[2:] @ v[2:]), start, jac=lambda v: np.array([0.0, 0.0, v[2], v[3]]),
-        method="SLSQP", options={"ftol": 1e-15, "maxiter": 200},
+        _half_square, start, jac=_half_square_slope, method="SLSQP",
+        options={"ftol": 1e-15, "maxiter": 200},
         constraints={"type": "ineq", "fun": system.gaps, "jac": system.slopes},
     )  # fmt: skip
     point = system.polished(np.asarray(answer.x))
@@ -74,6 +74,15 @@ def refine(
         return None
     f = (point[0] + 1j * point[1]) + (point[2] + 1j * point[3]) * hand.z
     return np.column_stack([f.real, f.imag]) * size + origin
+
+
+def _half_square(v: FloatArray) -> float:
+    """1/2 |w|^2, whose minimum is that of sigma."""
+    return 0.5 * float(v[2:] @ v[2:])
+
+
+def _half_square_slope(v: FloatArray) -> FloatArray:
+    return np.array([0.0, 0.0, v[2], v[3]])
 
 
 class _System:
@@ -113,7 +122,7 @@ class _System:
         """Derivative of the gaps, (features, 4)."""
         return np.einsum("ki,kij->kj", self._normals(v)[0], self._maps)
 
-    def _curvature(self, v: FloatArray, force: FloatArray, rows: FloatArray) -> FloatArray:
+    def _curvature(self, v: FloatArray, force: FloatArray, rows: IntArray) -> FloatArray:
         """Hessian of 1/2 |w|^2 - sum force x gap over the active features, (4, 4)."""
         hessian = np.diag([0.0, 0.0, 1.0, 1.0])
         normals, gaps = self._normals(v)
@@ -126,16 +135,16 @@ class _System:
 
     def polished(self, v: FloatArray) -> FloatArray | None:
         """Newton on stationarity and contact of the features that carry or nearly carry force."""
-        active = np.flatnonzero(self.gaps(v) < 1e-7)
+        active: IntArray = np.flatnonzero(self.gaps(v) < 1e-7).astype(np.int64)
         if not len(active):
             return None
         slope = self.slopes(v)[active]
-        gradient = np.array([0.0, 0.0, v[2], v[3]])
-        force = np.linalg.lstsq(slope.T, gradient, rcond=1e-9)[0]
+        gradient = _half_square_slope(v)
+        force: FloatArray = np.linalg.lstsq(slope.T, gradient, rcond=1e-9)[0].astype(np.float64)
         for _ in range(8):
             slope = self.slopes(v)[active]
             residual = np.concatenate(
-                [np.array([0.0, 0.0, v[2], v[3]]) - slope.T @ force, self.gaps(v)[active]]
+                [_half_square_slope(v) - slope.T @ force, self.gaps(v)[active]]
             )
             n = len(active)
             matrix = np.block(
@@ -144,8 +153,8 @@ class _System:
             step = np.linalg.lstsq(matrix, -residual, rcond=1e-12)[0]
             if not np.isfinite(step).all() or float(np.abs(step[:4]).max()) > 1e-2:
                 return None
-            v = v + step[:4]
-            force = force + step[4:]
-        gradient = np.array([0.0, 0.0, v[2], v[3]])
+            v = np.asarray(v + step[:4], dtype=np.float64)
+            force = np.asarray(force + step[4:], dtype=np.float64)
+        gradient = _half_square_slope(v)
         off = gradient - self.slopes(v)[active].T @ force
         return v if float(np.abs(off).max()) < 1e-9 else None

@@ -82,5 +82,5 @@ def plateau_reason(ends: tuple[Configuration, Configuration], terrain: Terrain) 
     length = abs(ends[1].d - ends[0].d)
     return (
         "no strict local minimum: opposing parallel edges let the object slide "
-        f"({length:.4g} long, {length / terrain.pieces.diameter:.3g} of the diameter) without opening"
+        f"({length:.4g} long, {length / terrain.pieces.diameter:.3g} of the diameter)"
     )

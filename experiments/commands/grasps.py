@@ -138,9 +138,9 @@ def _planned(
 ) -> list[Cage]:
     """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
     from icage.errors import GraspError
+    from icage.hand import HandShape
     from icage.planner import plan
     from icage.true_curve import refine
-    from icage.hand import HandShape
 
     cages: list[Cage] = []
     for points in contacts:

@@ -19,6 +19,7 @@ from icage.kernels.facet import MAX_EDGES
 
 CORNERS = 200
 _ROUNDS = 9
+_CENTRE_CUTS = 40
 
 
 @compiled
@@ -218,6 +219,22 @@ def _area(x, y, n):
 
 
 @compiled
+def _centroid(x, y, n):
+    """Area centroid of a polygon, or the mean of its corners if it has no area."""
+    area = 0.0
+    cx = 0.0
+    cy = 0.0
+    for a in range(1, n - 1):
+        part = (x[a] - x[0]) * (y[a + 1] - y[0]) - (x[a + 1] - x[0]) * (y[a] - y[0])
+        area += part
+        cx += part * (x[a] + x[a + 1] - 2.0 * x[0])
+        cy += part * (y[a] + y[a + 1] - 2.0 * y[0])
+    if area <= 0.0:
+        return x[:n].mean(), y[:n].mean()
+    return x[0] + cx / (3.0 * area), y[0] + cy / (3.0 * area)
+
+
+@compiled
 def _beyond(x, y, hx, hy, n):
     """Area that a point adds to the hull (hx, hy)."""
     total = 0.0
@@ -312,19 +329,29 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
         bx[:nh] = qx[:nh]
         by[:nh] = qy[:nh]
         nb = nh
-        # shoot from well inside: the middle of the outer polygon, as soon as it is in the set (the
-        # position given may lie on the boundary, where rays along it see nothing)
-        ox = px[:m].mean()
-        oy = py[:m].mean()
-        e, gx, gy, weight = cut(rows, n, ox, oy, level)
-        if e <= 0.0:
-            cx = ox
-            cy = oy
-            bx[nb], by[nb] = cx, cy
-            nb += 1
-        elif nh > 2:
-            cx = hx[:nh].mean()
-            cy = hy[:nh].mean()
+        # shoot from well inside: the middle of the outer polygon, cut down until it is in the set
+        # (the position given may lie on the boundary, where rays along it see nothing)
+        for _ in range(_CENTRE_CUTS):
+            ox, oy = _centroid(px, py, m)
+            e, gx, gy, weight = cut(rows, n, ox, oy, level)
+            if e <= 0.0:
+                cx = ox
+                cy = oy
+                bx[nb], by[nb] = cx, cy
+                nb += 1
+                break
+            if nh > 2:
+                cx = hx[:nh].mean()
+                cy = hy[:nh].mean()
+                break
+            m = _clip(px, py, done, m, e, gx, gy, ox, oy, 1e-3 * tiny * weight, qx, qy, qdone)
+            px[:m] = qx[:m]
+            py[:m] = qy[:m]
+            done[:m] = qdone[:m]
+            if m < 3 or _area(px, py, m) < 1e-3 * enough:
+                break
+        if m < 3:
+            break
     return nh, m
 
 

@@ -240,7 +240,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             # entered for the first time at the running maximum, so what lies lower behind this
             # pass was not reachable below it; ties (several facets through one vertex) included
             level = max(level, value)
-            behind, wx, wy, fi, sl = birth(
+            behind, _, _, _, _ = birth(
                 pieces, z, cell[0], cell[1], cell[2], level, worst, base, rows, tally
             )
             if n_records == records.shape[0]:

@@ -130,7 +130,7 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
                         t = s + 1 if s + 1 < pieces.ptr[cell[i] + 1] else pieces.ptr[cell[i]]
                         j = (i + 1) % 3
                         k = (i + 2) % 3
-                        value, wx, wy = pass_value(
+                        value, _, _ = pass_value(
                             pieces, z, i, pieces.slot_vertex[s], pieces.slot_vertex[t],
                             j, cell[j], k, cell[k], here + 2.0 * tie, worst, base, rows, tally,
                         )  # fmt: skip
