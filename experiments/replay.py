@@ -1,0 +1,204 @@
+"""The main job: plan a cage, draw placements from it, close the hand from each, see where it ends.
+
+A *run* is one set of placements of one grasp: the guaranteed set, from which every closing must
+end in the target, or the rest of the cage, from which none may escape and every one must end in a
+grasp that the planner knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from experiments.starts import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
+from icage.cage import Cage
+from icage.errors import InputError
+from icage.formats.case_json import Case
+from icage.planner import plan
+from sim.batch import close_many
+from sim.config import SimConfig
+from sim.judge import OUTCOMES, Verdicts, judge
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+
+DEEPEST_MOVING: Final = 1e-3
+"""[diameter] A finger deeper than this inside the object while closing is no contact any more."""
+
+DEEPEST_AT_REST: Final = 1e-5
+"""[diameter] ... and at rest."""
+
+SHAPE_ERROR: Final = 1e-5
+"""[diameter] The fingers stay on similar triangles to this."""
+
+SIGMA_RISE: Final = 1e-9
+"""[1] The hand only closes: sigma never above its start, but for rounding."""
+
+Report = Callable[[str, int, int], None]
+"""Progress: (stage, done, total)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One set of placements of one grasp, closed and judged."""
+
+    case: Case
+    cage: Cage
+    scene: Scene
+    which: StartSet
+    starts: Starts
+    closings: ClosingOutcomes
+    verdicts: Verdicts
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Trials per outcome, every outcome named."""
+        return self.verdicts.counts()
+
+    @property
+    def title(self) -> str:
+        """Grasp and set, to name the run in a sentence."""
+        return f"{self.case.name}, {self.which} set"
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """All runs of one object; ``skipped`` says in words which set could not be drawn from."""
+
+    runs: tuple[Run, ...]
+    seed: int
+    skipped: tuple[str, ...] = field(default=())
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """What did not hold, a plain sentence each; empty if everything did."""
+        return tuple(sentence for run in self.runs for sentence in run_failures(run))
+
+
+def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: Report) -> Replay:
+    """Plan, draw, close and judge every grasp: the guaranteed set, and the rest where there is any.
+
+    The same for any number of threads; a run depends on the seed, on its place among the grasps
+    and on nothing else.
+
+    Raises
+    ------
+    InputError:
+        A case has point fingers, or is not a cage.
+    SamplingError:
+        A guaranteed set is too small to be drawn from.
+    """
+    for case in cases:
+        if not case.finger_radius > 0.0:
+            raise InputError(
+                f"{case.name}: finger_radius is 0; a simulated hand needs fingers of some radius"
+            )
+    runs: list[Run] = []
+    skipped: list[str] = []
+    for number, case in enumerate(cases):
+        report("planning", number, len(cases))
+        cage = plan(case.outline, case.contacts, case.finger_radius)
+        if cage.verdict == "not_a_cage":
+            raise InputError(f"{case.name} is not a cage ({cage.why}): there is nothing to replay")
+        scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
+        for which in _sets(cage):
+            rng = np.random.default_rng([seed, number, 0 if which == "guaranteed" else 1])
+            drawing = _Bar(report, f"placements {case.name} {which}", trials)
+            try:
+                starts = draw_starts(cage, which, trials, rng, drawing)
+            except SamplingError as error:
+                if which == "guaranteed":
+                    raise
+                skipped.append(f"{case.name}: {error}")
+                continue
+            closing = _Bar(report, f"closing {case.name} {which}", trials)
+            closings = close_many(scene, starts.placements, threads, closing)
+            verdicts = judge(closings, cage.grasps, case.outline)
+            runs.append(Run(case, cage, scene, which, starts, closings, verdicts))
+    report("planning", len(cases), len(cases))
+    return Replay(tuple(runs), seed, tuple(skipped))
+
+
+def _sets(cage: Cage) -> Iterator[StartSet]:
+    yield "guaranteed"
+    if has_rest(cage):
+        yield "rest"
+
+
+class _Bar:
+    """Turns "so many more" into "so many of all" for a progress bar."""
+
+    def __init__(self, report: Report, stage: str, total: int) -> None:
+        self._report, self._stage, self._total, self._done = report, stage, total, 0
+
+    def __call__(self, more: int) -> None:
+        self._done += more
+        self._report(self._stage, self._done, self._total)
+
+
+def run_failures(run: Run) -> Iterator[str]:
+    """What did not hold in a run. Nothing is forgiven here: the limits are those promised."""
+    counts, trials = run.counts, len(run.closings)
+    wanted = ("target",) if run.which == "guaranteed" else ("target", "other_grasp")
+    missed = {name: k for name, k in counts.items() if k and name not in wanted}
+    if missed:
+        what = ", ".join(f"{k} {name.replace('_', ' ')}" for name, k in missed.items())
+        goal = "the target grasp" if run.which == "guaranteed" else "a grasp that was planned"
+        yield f"{run.title}: {sum(missed.values())} of {trials} did not end in {goal} ({what})"
+    limits = (
+        ("penetration while closing", run.closings.penetration_max, DEEPEST_MOVING),
+        ("penetration at rest", _at_rest(run), DEEPEST_AT_REST),
+        ("shape error", run.closings.shape_error_max, SHAPE_ERROR),
+        ("rise of sigma above its start", run.closings.sigma_rise_max - 1.0, SIGMA_RISE),
+    )
+    for name, values, limit in limits:
+        over = int((~(values <= limit)).sum())
+        if over:
+            yield f"{run.title}: {name} up to {np.max(values):.2g} in {over} trials, over {limit:g}"
+
+
+def _at_rest(run: Run) -> np.ndarray:
+    """Penetrations of those that came to rest."""
+    ended = np.isin(run.verdicts.outcome, [OUTCOMES.index(name) for name in _RESTING])
+    return run.closings.penetration_rest[ended]
+
+
+_RESTING: Final = ("target", "other_grasp", "jammed", "unmatched")
+
+
+def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
+    """A run as in ``icage-replay/1``. Lengths in ``unit``; errors over trials in the target."""
+    size = run.case.outline.diameter
+    reached = run.verdicts.outcome == OUTCOMES.index("target")
+    sigma = run.starts.placements[:, 3]
+    limit = safe_level(
+        run.cage.sigma_first if run.which == "guaranteed" else run.cage.sigma_max, run.cage.sigma_0
+    )
+    return {
+        "grasp": run.case.name,
+        "set": run.which,
+        "plan": plan_document,
+        "unit": run.case.unit,
+        "diameter": size,
+        "trials": len(run.closings),
+        **run.counts,
+        "position_error_max": _largest(run.verdicts.position_error[reached] * size),
+        "angle_error_max_deg": _largest(np.degrees(run.verdicts.angle_error[reached])),
+        "penetration_max": _largest(run.closings.penetration_max * size),
+        "penetration_rest_max": _largest(_at_rest(run) * size),
+        "shape_error_max": _largest(run.closings.shape_error_max * size),
+        "time_step": run.scene.config.time_step,
+        "sigma_range": [float(sigma.min()), float(sigma.max())],
+        "sigma_limit": None if np.isinf(limit) else limit,
+        "acceptance_rate": run.starts.acceptance_rate,
+        "steps_mean": float(run.closings.steps.mean()),
+        "failures": list(run_failures(run)),
+    }
+
+
+def _largest(values: np.ndarray) -> float | None:
+    """The largest finite number, None if there is none (JSON knows no NaN)."""
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if len(finite) else None

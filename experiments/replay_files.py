@@ -1,0 +1,149 @@
+"""What a replay leaves behind: replay.json, trials.parquet, regions.svg, replay.mp4.
+
+Everything is written into a hidden folder first and moved into place at the end, so that a run
+that fails or is interrupted leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from experiments.figures import draw_plan, figure_regions
+from experiments.json_out import write_json
+from experiments.plan_json import plan_document
+from experiments.replay import Replay, Run, run_document
+from experiments.versions import versions
+from icage.membership import VERDICTS, query
+from icage.regions import FingerRegion
+from sim.judge import OUTCOMES
+
+JSON, TRIALS, REGIONS, VIDEO = "replay.json", "trials.parquet", "regions.svg", "replay.mp4"
+ALL: Final = (JSON, TRIALS, REGIONS, VIDEO)
+
+
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """A place to write files to; they move into ``folder`` together when the block ends well.
+
+    ``folder`` is made if need be. Files of an earlier replay that this one did not write again are
+    removed: they would speak of another run.
+    """
+    made = [part for part in (folder, *folder.parents) if not part.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    staging = Path(tempfile.mkdtemp(prefix=".replay-", dir=folder))
+    try:
+        yield staging
+        for name in ALL:
+            written = staging / name
+            if written.exists():
+                written.replace(folder / name)
+            else:
+                (folder / name).unlink(missing_ok=True)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+        for part in made:  # deepest first; only while empty
+            if part.is_dir() and not any(part.iterdir()):
+                part.rmdir()
+
+
+def write_results(
+    done: Replay, name: str, regions: dict[str, tuple[FingerRegion, ...]], folder: Path
+) -> dict[str, Any]:
+    """Everything but the video; returns the document of ``replay.json``.
+
+    ``regions`` are those a figure shows, by the name of the grasp.
+    """
+    first = done.runs[0]
+    document = replay_document(done, name, regions)
+    write_json(document, str(folder / JSON))
+    pq.write_table(trial_table(done), folder / TRIALS, compression="zstd")
+    draw_plan(
+        first.cage, regions[first.case.name], first.case.name, first.case.unit, folder / REGIONS
+    )
+    return document
+
+
+def regions_by_grasp(done: Replay) -> dict[str, tuple[FingerRegion, ...]]:
+    """The regions a figure shows, once per grasp."""
+    return {
+        run.case.name: figure_regions(run.cage) for run in done.runs if run.which == "guaranteed"
+    }
+
+
+def replay_document(
+    done: Replay, name: str, regions: dict[str, tuple[FingerRegion, ...]]
+) -> dict[str, Any]:
+    """The document ``icage-replay/1``; the keys of the first run stand at the top level too."""
+    runs: list[dict[str, Any]] = []
+    for run in done.runs:
+        level = "all" if run.cage.sigma_max is None else "sigma_max"
+        shown = [r for r in regions[run.case.name] if r.level_name == level]
+        runs.append(run_document(run, plan_document(run.cage, shown, run.case.name, run.case.unit)))
+    return {
+        "format": "icage-replay/1",
+        "name": name,
+        "seed": done.seed,
+        "versions": versions(),
+        "passed": not done.failures,
+        **{**runs[0], "failures": list(done.failures)},
+        "skipped": list(done.skipped),
+        "runs": runs,
+    }
+
+
+def trial_table(done: Replay) -> pa.Table:
+    """A row per trial. Lengths in the case's unit, angles in [rad], in the object's frame."""
+    tables = [_run_table(number, run, done.seed) for number, run in enumerate(done.runs)]
+    table = pa.concat_tables(tables)
+    words = {"format": "icage-trials/1", "unit": done.runs[0].case.unit, **versions()}
+    return table.replace_schema_metadata(words)
+
+
+def _run_table(number: int, run: Run, seed: int) -> pa.Table:
+    count, size = len(run.closings), run.case.outline.diameter
+    verdict = query(run.cage, run.starts.placements).verdict
+    lost = np.flatnonzero(run.verdicts.outcome == OUTCOMES.index("diverged"))
+    columns: dict[str, Any] = {
+        "run": np.full(count, number),
+        "grasp": pa.array([run.case.name] * count).dictionary_encode(),
+        "set": pa.array([run.which] * count).dictionary_encode(),
+        "trial": np.arange(count),
+        "seed": np.full(count, seed, dtype=np.uint64),
+        **_pose("start", run.closings.start, ()),
+        "verdict": pa.array([VERDICTS[k] for k in verdict]).dictionary_encode(),
+        "outcome": pa.array([OUTCOMES[k] for k in run.verdicts.outcome]).dictionary_encode(),
+        "grasp_id": run.verdicts.grasp_id,
+        **_pose("end", run.closings.end, lost),
+        "position_error": _known(run.verdicts.position_error * size, lost),
+        "angle_error": _known(run.verdicts.angle_error, lost),
+        "grasp_position_error": _known(run.verdicts.grasp_position_error * size, lost),
+        "grasp_angle_error": _known(run.verdicts.grasp_angle_error, lost),
+        "penetration_max": _known(run.closings.penetration_max * size, lost),
+        "penetration_rest": _known(run.closings.penetration_rest * size, lost),
+        "steps": run.closings.steps,
+    }
+    return pa.table(columns)
+
+
+def _pose(prefix: str, placements: np.ndarray, lost: Any) -> dict[str, Any]:
+    names = ("x", "y", "theta", "sigma")
+    return {
+        f"{prefix}_{name}": _known(column, lost)
+        for name, column in zip(names, placements.T, strict=True)
+    }
+
+
+def _known(values: np.ndarray, lost: Any) -> pa.Array:
+    """The values, null where a diverged closing left none."""
+    mask = np.zeros(len(values), dtype=np.bool_)
+    mask[list(lost)] = True
+    return pa.array(np.ascontiguousarray(values), mask=mask)

@@ -1,0 +1,231 @@
+"""Starts of closings: placements drawn from a cage, uniform in dx dy dtheta dsigma. Our own.
+
+The *guaranteed set* is the component of the target below sigma_first, drawn below
+``safe_level(sigma_first)``; the *rest* is what the cage holds besides (the target's component
+below sigma_max without the guaranteed set, neighbours' basins included), drawn below
+``safe_level(sigma_max)``. Every start is clear of the true outline, not of a polygonal offset.
+
+Rejection from a box that holds the set for certain: two fingers i, j are drawn uniformly from the
+*outer* bounds of their caging regions. Then d and w = (f_j - f_i) / (z_j - z_i) are uniform in
+dx dy d^2 w = dx dy sigma dsigma dtheta; keeping a hand with probability (least sigma) / sigma makes
+it uniform in dx dy dsigma dtheta, and the membership query has the last word.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from icage.arrays import BoolArray, FloatArray, read_only
+from icage.cage import Cage
+from icage.errors import GeometryError, IcageError
+from icage.kernels.locate import depth_inside
+from icage.membership import TARGET, query
+from icage.regions import caging_regions
+
+StartSet = Literal["guaranteed", "rest"]
+
+TRIES_PER_START = 100_000
+"""Hands tried per start asked for before giving up: the rates seen are 1e-3 to 0.2."""
+
+_CHUNK = 25_000
+"""Hands tried at once."""
+
+_GAP = 0.02
+"""[1] Bounds of the regions this close cost little time and a few more tries."""
+
+_LEAST_SIGMA = 1.0 - 1e-6
+"""[1] The least sigma of a set is that of its minima, known to better than this (relative)."""
+
+_ROOM = 4e-9
+"""[diameter] The outer bounds of regions are noded on a grid of a quarter of this."""
+
+
+class SamplingError(IcageError):
+    """A set of placements is too small in its box to be drawn from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Starts:
+    """Placements (n, 4) = x, y, theta, sigma, and how many hands were tried for them."""
+
+    placements: FloatArray
+    tried: int
+
+    def __len__(self) -> int:
+        return len(self.placements)
+
+    @property
+    def acceptance_rate(self) -> float:
+        """[1] Share of the hands tried that lay in the set."""
+        return len(self) / self.tried if self.tried else 0.0
+
+
+def safe_level(sigma: float | None, sigma_0: float) -> float:
+    """A little below a level: S - min(0.005 S, 0.05 (S - sigma_0)); inf for no level.
+
+    >>> safe_level(2.0, 1.0), round(safe_level(1.01, 1.0), 6), safe_level(None, 1.0)
+    (1.99, 1.0095, inf)
+    """
+    if sigma is None:
+        return np.inf
+    return sigma - min(0.005 * sigma, 0.05 * (sigma - sigma_0))
+
+
+def has_rest(cage: Cage) -> bool:
+    """Whether the cage holds placements outside the guaranteed set below safe_level(sigma_max)."""
+    if cage.sigma_first is None or cage.verdict == "not_a_cage":
+        return False
+    top = safe_level(cage.sigma_max, cage.sigma_0)
+    return cage.sigma_first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
+
+
+def draw_starts(
+    cage: Cage,
+    which: StartSet,
+    count: int,
+    rng: np.random.Generator,
+    progress: Callable[[int], None] | None = None,
+) -> Starts:
+    """Draw ``count`` placements from one set of a cage.
+
+    Parameters
+    ----------
+    progress:
+        Called with the number of placements found since the last call.
+
+    Raises
+    ------
+    SamplingError:
+        The set is empty, or ``TRIES_PER_START`` hands a start were not enough; says how many were
+        found in how many tries.
+    """
+    if cage.verdict == "not_a_cage" or (which == "rest" and not has_rest(cage)):
+        raise SamplingError(f"this cage has no {which} set of placements")
+    box = _Box.around(cage, which)
+    found: list[FloatArray] = []
+    have, tried, limit = 0, 0, TRIES_PER_START * count
+    while have < count and tried < limit:
+        rows, places = box.some_of(rng, cage, which, _CHUNK)
+        if have + len(rows) >= count:  # tries after the last start taken do not count
+            rows = rows[: count - have]
+            tried += int(places[len(rows) - 1]) + 1 if len(rows) else 0
+        else:
+            tried += _CHUNK
+        found.append(rows)
+        have += len(rows)
+        if progress is not None:
+            progress(len(rows))
+    if have < count:
+        raise SamplingError(
+            f"the {which} set is too small to draw from: {have} of {count} placements found in "
+            f"{tried} tries"
+        )
+    return Starts(read_only(np.concatenate(found)), tried)
+
+
+@dataclass(frozen=True, slots=True)
+class _Box:
+    """Two fingers in their regions, the third in the bounds of its own, sigma in [floor, top)."""
+
+    z: NDArray[np.complex128]
+    pair: tuple[int, int]
+    areas: tuple[_Area, _Area]
+    third: shapely.MultiPolygon
+    floor: float
+    top: float
+
+    @classmethod
+    def around(cls, cage: Cage, which: StartSet) -> _Box:
+        """A box that holds the set: a placement of it has each finger in the finger's region."""
+        if which == "guaranteed":
+            top = safe_level(cage.sigma_first, cage.sigma_0)
+            level, floor = (None if np.isinf(top) else top), cage.sigma_0
+        else:
+            top = safe_level(cage.sigma_max, cage.sigma_0)
+            level, floor = None, min(grasp.sigma for grasp in cage.grasps)
+        room = _ROOM * cage.outline.diameter
+        outer = [r.geometry for r in caging_regions(cage, level, _GAP) if r.bound == "outer"]
+        regions = [geometry.buffer(room, join_style="mitre") for geometry in outer]
+        pairs = ((0, 1), (1, 2), (2, 0))
+        z = cage.hand.z
+        volumes = [regions[i].area * regions[j].area / abs(z[j] - z[i]) ** 2 for i, j in pairs]
+        i, j = pairs[int(np.argmin(volumes))]
+        third = regions[3 - i - j]
+        shapely.prepare(third)
+        areas = (_Area.of(regions[i]), _Area.of(regions[j]))
+        return cls(z, (i, j), areas, third, floor * _LEAST_SIGMA, top)
+
+    def some_of(
+        self, rng: np.random.Generator, cage: Cage, which: StartSet, tries: int
+    ) -> tuple[FloatArray, NDArray[np.int64]]:
+        """Placements (k, 4) of the set among ``tries`` hands, and which of the hands they were."""
+        rows = self._hands(rng, tries)
+        keep = rng.random(tries) * rows[:, 3] < self.floor
+        # A hand smaller than the floor would have to be kept more than once: there is none in the
+        # set, or the floor is wrong.
+        too_small = np.flatnonzero(rows[:, 3] < self.floor)
+        if len(too_small) and _belongs(cage, which, rows[too_small]).any():
+            raise GeometryError(f"a placement of the {which} set below its least sigma")
+        places = np.flatnonzero(keep & (rows[:, 3] >= self.floor) & (rows[:, 3] < self.top))
+        rows = rows[places]
+        at = cage.hand.fingers(rows)[:, 3 - sum(self.pair)]
+        near = shapely.contains_xy(self.third, at[:, 0], at[:, 1])
+        rows, places = rows[near], places[near]
+        inside = _belongs(cage, which, rows)
+        return rows[inside], places[inside]
+
+    def _hands(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Placements (count, 4), uniform in dx dy sigma dsigma dtheta over the two regions."""
+        i, j = self.pair
+        f_i, f_j = (area.points(rng, count) for area in self.areas)
+        w = (f_j - f_i) / (self.z[j] - self.z[i])
+        d = f_i - w * self.z[i]
+        return np.column_stack([d.real, d.imag, np.angle(w), np.abs(w)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Area:
+    """A region cut into triangles, to draw points from."""
+
+    corners: NDArray[np.complex128]
+    cumulative: FloatArray
+
+    @classmethod
+    def of(cls, region: shapely.MultiPolygon) -> _Area:
+        """Cut a region, holes and all."""
+        cut = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
+        areas = shapely.area(cut)
+        if not abs(areas.sum() - region.area) <= 1e-9 * region.area:
+            raise GeometryError("the triangles of a caging region do not fill it")
+        rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
+        return cls(rings[..., 0] + 1j * rings[..., 1], np.cumsum(areas))
+
+    def points(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
+        """Points (count,), uniform over the region."""
+        at = np.searchsorted(self.cumulative, rng.random(count) * self.cumulative[-1], "right")
+        a, b, c = self.corners[np.minimum(at, len(self.corners) - 1)].T
+        u, v = rng.random((2, count))
+        over = u + v > 1.0
+        u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
+        return a + u * (b - a) + v * (c - a)
+
+
+def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:
+    """Which placements (n, 4) are in the set and clear of the true outline, (n,)."""
+    inside = np.zeros(len(placements), dtype=np.bool_)
+    if not len(placements):
+        return inside
+    answers = query(cage, placements)
+    target = answers.verdict == TARGET
+    inside[:] = target if which == "guaranteed" else answers.in_cage & ~target
+    at = np.flatnonzero(inside)
+    fingers = cage.hand.fingers(placements[at]).reshape(-1, 2)
+    depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
+    inside[at] = (depth <= 0.0).all(axis=1)
+    return inside
