@@ -14,7 +14,6 @@ import shapely
 import trimesh
 
 from icage.arrays import FloatArray
-from icage.convex import triangulate
 from icage.hand import Placement
 from sim.engine import MjBody, MjSpec, mj
 from sim.hand_model import FINGER_COLOURS, looks_only
@@ -24,7 +23,12 @@ from sim.scene import Scene
 CAMERA: Final = "top"
 _TARGET_COLOUR: Final = (0.98, 0.55, 0.05, 0.99)
 """Almost opaque: transparent things throw no shadow."""
-_REGION_ALPHA: Final = 0.38
+_REGION_ALPHA: Final = 0.3
+_FLOOR: Final = -0.16
+
+_FINEST: Final = 2e-4
+"""[diameter] A fifth of a pixel: finer detail of a region is not drawn."""
+
 _HIDDEN_GROUP: Final = 4
 """The collision pieces, whose seams nobody wants to see; groups 0 to 2 are drawn."""
 
@@ -126,14 +130,14 @@ def _add_region(
     finger: int,
     geometry: shapely.Geometry,
 ) -> None:
-    """One flat translucent mesh per part, a little above the floor and below the object."""
-    for part_number, part in enumerate(_parts(geometry)):
-        normal = shapely.transform(
-            part, lambda points: (points - scene.thing.centre) / scene.thing.unit
-        )
+    """One flat translucent mesh per part, painted on the floor: higher up it would cast shadows."""
+    normal = shapely.transform(
+        geometry, lambda points: (points - scene.thing.centre) / scene.thing.unit
+    )
+    for part_number, part in enumerate(_parts(shapely.simplify(normal, _FINEST))):
         name = f"region_{number}_{part_number}_look"
-        level = -0.065 + 0.004 * finger
-        _add_flat(spec, body, name, normal, level, level + 0.001)
+        level = _FLOOR + 0.002 * finger
+        _add_flat(spec, body, name, part, level, level + 0.001)
         spec.geom(name).rgba = [*FINGER_COLOURS[finger - 1], _REGION_ALPHA]
 
 
@@ -150,18 +154,28 @@ def _add_target(spec: MjSpec, scene: Scene, target: Placement) -> None:
 
 
 def _parts(geometry: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons of an area, without dust that has no area to draw."""
+    """The polygons of an area, without dust: specks and pinholes too small to be seen."""
     parts = shapely.get_parts(shapely.make_valid(geometry))
     flat = [p for part in parts for p in shapely.get_parts(part)]
-    return [p for p in flat if isinstance(p, shapely.Polygon) and p.area > 0.0]
+    return [
+        shapely.Polygon(p.exterior, [h for h in p.interiors if _seen(shapely.Polygon(h))])
+        for p in flat
+        if isinstance(p, shapely.Polygon) and _seen(p)
+    ]
+
+
+def _seen(polygon: shapely.Polygon) -> bool:
+    return polygon.area > _FINEST * polygon.length
 
 
 def _add_flat(
     spec: MjSpec, body: MjBody, name: str, polygon: shapely.Polygon, low: float, high: float
 ) -> None:
     """A plate of any shape, holes included, as one mesh."""
-    vertices, triangles = triangulate(shapely.remove_repeated_points(polygon, 1e-9))
-    plate = trimesh.creation.extrude_triangulation(vertices, triangles, high - low)
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3].reshape(-1, 2)
+    vertices, triangles = np.unique(corners, axis=0, return_inverse=True)
+    plate = trimesh.creation.extrude_triangulation(vertices, triangles.reshape(-1, 3), high - low)
     plate.apply_translation([0.0, 0.0, low])
     corners = plate.vertices[plate.faces].reshape(-1, 3)  # own corners: no smoothed normals
     mesh = spec.add_mesh(name=name)
@@ -177,8 +191,8 @@ def _light(spec: MjSpec) -> None:
     spec.worldbody.add_light(
         name="sun",
         type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
-        pos=[-0.8, 1.0, 2.5],
-        dir=[0.22, -0.30, -1.0],
+        pos=[-0.26, 0.37, 2.2],
+        dir=[0.12, -0.17, -1.0],
         diffuse=[0.38, 0.38, 0.38],
         specular=[0.05, 0.05, 0.05],
         castshadow=True,
@@ -191,7 +205,7 @@ def _light(spec: MjSpec) -> None:
     visual.quality.offsamples = 4
     visual.map.znear = 0.01
     visual.map.zfar = 10.0
-    visual.map.shadowclip = 1.0
+    visual.map.shadowclip = 1.2
     spec.stat.extent = 1.0
     spec.stat.center = [0.0, 0.0, 0.0]
 
@@ -200,7 +214,7 @@ def _add_floor(spec: MjSpec) -> None:
     floor = spec.worldbody.add_geom(
         name="floor_look",
         type=mj.mjtGeom.mjGEOM_PLANE,
-        pos=[0.0, 0.0, -0.16],
+        pos=[0.0, 0.0, _FLOOR],
         size=[6.0, 6.0, 0.1],
         rgba=[0.96, 0.96, 0.95, 1.0],
     )

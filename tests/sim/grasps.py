@@ -78,7 +78,12 @@ def shipped(name: str) -> KnownGrasp:
             [62.13588638358817, 19.298875791902578],
             [86.09050132560871, 63.68985118568504],
             [35.8238864045785, 60.8936537113419],
-        ]
+        ],
+        "saw": [
+            [455.2094093981052, 62.307869049995546],
+            [324.574041865802, 111.10441218066876],
+            [323.0945966978584, 24.757924438640092],
+        ],
     }[name]
     case = json.loads(models.outline_path(name).read_text())
     return KnownGrasp(Outline(case["outline"]["vertices"]), 6.0, np.array(contacts))

@@ -119,3 +119,16 @@ def test_frames_or_a_plain_refusal() -> None:
             x, y = view.pixels(tip).round().astype(int)
             assert frame[y, x].argmax() == colour[0], f"finger {k + 1} is not {colour[1]}"
     assert (frames[0] != frames[1]).any()
+
+
+def test_regions_with_dust_and_touching_rings_can_be_staged() -> None:
+    """Unions of many cells leave pinholes and rings that touch; a film must not fail on them."""
+    scene = GRASP.scene()
+    rng = np.random.default_rng(2)
+    dust = [shapely.Point(x, y).buffer(1e-7) for x, y in rng.uniform(5.0, 6.0, (30, 2))]
+    square = shapely.box(5.0, 5.0, 6.0, 6.0).difference(shapely.union_all(dust))
+    diamond = shapely.Polygon([(5, 5.5), (5.3, 5.4), (5.6, 5.5), (5.3, 5.6)])
+    geometry = shapely.MultiPolygon([square.difference(diamond), shapely.box(6.0, 6.0, 7.0, 7.0)])
+    model = dressed(scene, View((0.0, 0.0), 2.0, 64, 64), Decor([(2, geometry)])).compile()
+    drawn = [model.mesh(k).name for k in range(model.nmesh) if "region" in model.mesh(k).name]
+    assert len(drawn) == 2
