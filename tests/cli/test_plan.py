@@ -138,13 +138,24 @@ def test_files_and_the_summary(tmp_path: Path, capsys: Any):
 
 @pytest.mark.parametrize("name", object_names())
 def test_a_shipped_object_needs_only_its_name(name: str, capsys: Any):
-    document = plan(capsys, name)
-    assert document["verdict"] == "cage"
-    assert document["unit"] == "mm"
+    result = here(capsys, "plan", name)
+    assert result.code == 0
+    assert "verdict      cage\n" in result.out
+    assert " mm, hand phi = " in result.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", object_names())
+def test_a_shipped_object_has_regions_and_a_figure(name: str, tmp_path: Path, capsys: Any):
+    document = plan(capsys, name, "--figure", str(tmp_path / "cage.png"))
+    assert (document["verdict"], document["unit"]) == ("cage", "mm")
+    assert len(document["regions"]) == 6
+    assert max(region["area_gap"] for region in document["regions"]) <= 1e-3
+    assert (tmp_path / "cage.png").stat().st_size > 10_000
 
 
 def test_json_alone_on_standard_output_as_a_user_sees_it():
-    result = process("plan", "wrench", "--json", "-")
+    result = process("plan", str(CASES / "T_best.json"), "--json", "-")
     assert result.code == 0
     assert json.loads(result.out)["format"] == "icage-plan/1"
     assert result.err == ""
