@@ -41,6 +41,7 @@ _FLATTEST = 0.05
 
 _SEARCH_LIMIT = 20_000
 _CHUNK = 64
+_MOST_TRIPLES = 20_000
 _MORE_POINTS = 8
 _PROMISING = 300
 _IMPROVED = 32
@@ -143,11 +144,16 @@ class Bench:
             return None
         return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
 
-    def jobs(self) -> list[_Job]:
-        """A triple of features and a point of concurrency each: where the search starts."""
+    def jobs(self, rng: np.random.Generator) -> list[_Job]:
+        """A triple of features and a point of concurrency each: where the search starts.
+
+        All triples that can balance, or a random choice of ``_MOST_TRIPLES`` of them.
+        """
         triples, points = balanced_triples(self.features, self.outline, self.apart)
         corners = (self.features.kind[triples] == VERTEX).sum(axis=1)
-        use = corners >= self.wanted.corners
+        use = np.flatnonzero(corners >= self.wanted.corners)
+        if len(use) > _MOST_TRIPLES:
+            use = np.sort(rng.choice(use, _MOST_TRIPLES, replace=False))
         jobs: list[_Job] = list(zip(triples[use], points[use], strict=True))
         if self.wanted.near is None:
             return jobs
@@ -268,7 +274,7 @@ def best_grasps(
         raise InputError(f"top = {top}; at least 1 is needed")
     bench = Bench(outline, finger_radius, wanted)
     with _Workers(outline, finger_radius, wanted, workers, bench) as pool:
-        found = pool.run(_try_chunk, bench.jobs(), "every triple", progress)
+        found = pool.run(_try_chunk, bench.jobs(rng), "every triple", progress)
         ranked = _ranked(found)
         more: list[_Job] = []
         for candidate, p in ranked[:_PROMISING]:

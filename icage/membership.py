@@ -15,9 +15,10 @@ import numpy as np
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage, CageWork
 from icage.errors import PlacementError
+from icage.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
 from icage.kernels.tree import find_at
-from icage.solver import Search, Terrain, inside_cells, search
+from icage.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.tolerance import COLLISION, LEVEL
 
 VERDICTS: Final = ("target", "caged", "other", "escapes", "collision")
@@ -65,35 +66,21 @@ class Answers:
 
 
 class EscapeLevels:
-    """Escape level of cells outside the cage, found when asked for and remembered."""
+    """Escape levels of cells outside the cage, found when asked for and remembered."""
 
     def __init__(self, terrain: Terrain) -> None:
         self._terrain = terrain
-        self._exact: dict[int, float] = {}
-        self._at_most: dict[int, float] = {}
+        self._memory: tuple[IntArray, FloatArray] = new_memory()
 
-    def escapes(self, cell: IntArray, sigma: float) -> tuple[bool, float]:
-        """Whether a hand in the cell escapes at sigma, and if not, at which level it does."""
-        m = self._terrain.pieces.total
-        key = int((cell[0] * m + cell[1]) * m + cell[2])
-        if self._at_most.get(key, np.inf) <= sigma:
-            return True, 0.0
-        if key not in self._exact:
-            self._remember(search(self._terrain, cell, 0.0))
-        level = self._exact[key]
-        return level <= sigma, level
-
-    def _remember(self, found: Search) -> None:
-        """Cells entered before the last new maximum escape exactly there, later ones no later."""
-        m = self._terrain.pieces.total
-        keys = (found.nodes[:, 0] * m + found.nodes[:, 1]) * m + found.nodes[:, 2]
-        exact = found.node_level < found.level
-        exact[0] = True
-        for key in keys[exact].tolist():
-            self._exact[key] = found.level
-        for key in keys.tolist():
-            if found.level < self._at_most.get(key, np.inf):
-                self._at_most[key] = found.level
+    def of(self, cells: IntArray, sigma: FloatArray) -> FloatArray:
+        """Escape level (n,) of each cell (n, 3); where it is not above sigma, any such level."""
+        terrain = self._terrain
+        levels, *memory = escape_levels(
+            terrain.pieces, terrain.z, cells, sigma, terrain.cap, terrain.worst, CELL_LIMIT,
+            *self._memory,
+        )  # fmt: skip
+        self._memory = (memory[0], memory[1])
+        return levels
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +144,7 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
         cells = _cells(work, fingers[free], size)
         nodes[free] = _inside_nodes(work, cells)
         _judge_inside(cage, work, sigma, nodes, verdict, margin, target_margin, in_cage)
-        _judge_outside(cage, work, free, cells, sigma, nodes, verdict, margin)
+        _judge_outside(cage, work, rows, free, cells, nodes, verdict, margin)
     return Answers(verdict, sigma, margin, target_margin, in_cage, cage, nodes)
 
 
@@ -212,21 +199,30 @@ def _judge_inside(
 
 
 def _judge_outside(
-    cage: Cage, work: CageWork, free: IntArray, cells: IntArray, sigma: FloatArray,
+    cage: Cage, work: CageWork, rows: FloatArray, free: IntArray, cells: IntArray,
     nodes: IntArray, verdict: IntArray, margin: FloatArray,
 ) -> None:  # fmt: skip
     """Placements in other cells: is there a way out at their own sigma?"""
     terrain = work.search.terrain
-    candidates = (nodes[free] < 0) & (cells >= 0).all(axis=1) & (sigma[free] < terrain.cap)
-    # small sigmas last: what the large ones have learnt answers most of them
-    order = np.flatnonzero(candidates)
-    levels = _escape_levels(work)
-    for k in order[np.argsort(-sigma[free[order]], kind="stable")].tolist():
-        row = int(free[k])
-        out, level = levels.escapes(cells[k], float(sigma[row]) * (1.0 + LEVEL))
-        if not out:
-            verdict[row] = OTHER
-            margin[row] = np.nan if np.isinf(level) else level - sigma[row]
+    sigma = rows[free, 3]
+    asked = np.flatnonzero((nodes[free] < 0) & (cells >= 0).all(axis=1) & (sigma < terrain.cap))
+    # most hands off the object can shrink to a point where they stand
+    at = rows[free[asked]]
+    hands = np.column_stack(
+        [
+            at[:, :2] - terrain.origin,
+            sigma[asked, None] * np.column_stack([np.cos(at[:, 2]), np.sin(at[:, 2])]),
+        ]
+    )
+    asked = asked[~shrinkable(terrain.pieces, terrain.z, hands)]
+    # small sigmas last: what the large ones have taught answers most of them
+    asked = asked[np.argsort(-sigma[asked], kind="stable")]
+    reach = sigma[asked] * (1.0 + LEVEL)
+    levels = _escape_levels(work).of(cells[asked], reach)
+    held = levels > reach
+    verdict[free[asked[held]]] = OTHER
+    never = np.isinf(levels[held])
+    margin[free[asked[held]]] = np.where(never, np.nan, levels[held] - sigma[asked[held]])
 
 
 def _locator(work: CageWork) -> Locator:
