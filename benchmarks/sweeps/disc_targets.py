@@ -58,7 +58,7 @@ def _compare(target: Target, outcome: Outcome, resolutions: tuple[int, ...]) -> 
 
 
 def _at(target: Target, outcome: Outcome, segments: int) -> tuple[Levels, Levels]:
-    """Levels on the inner and the outer polygon, all rotations and both kinds of pieces agreeing."""
+    """Levels on the inner and the outer polygon, all rotations and pieces compared."""
     references: list[Levels] = []
     for angle in ROTATIONS:
         vertices, contacts = rotated(target.vertices, angle), rotated(target.contacts, angle)

@@ -23,7 +23,7 @@ TOLERANCE = 1e-7
 
 @dataclass(slots=True)
 class Outcome:
-    """What one target showed. ``opening`` = sigma_max / sigma_0 (None: never escapes, no minimum)."""
+    """What one target showed. ``opening`` = sigma_max / sigma_0 where both exist."""
 
     number: int
     family: str
