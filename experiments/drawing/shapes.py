@@ -47,3 +47,17 @@ def scale_bar_length(longest: float) -> float:
     power = 10.0 ** math.floor(math.log10(longest) + 1e-12)
     step = max(step for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-12))
     return float(f"{step * power:.12g}")
+
+
+def tidied(geometry: BaseGeometry, detail: float) -> shapely.MultiPolygon:
+    """The same area for drawing: nothing in it smaller than ``detail``, few vertices."""
+    closed = geometry.buffer(detail, join_style="mitre").buffer(-detail, join_style="mitre")
+    parts = polygons_of(shapely.make_valid(shapely.simplify(closed, 0.5 * detail)))
+    kept = [
+        shapely.Polygon(
+            part.exterior, [h for h in part.interiors if shapely.Polygon(h).area > 9.0 * detail**2]
+        )
+        for part in parts
+        if part.area > detail**2
+    ]
+    return shapely.MultiPolygon(kept)

@@ -1,0 +1,122 @@
+"""Closings chosen from a replay and recorded at the frames of a film."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from experiments.replay import Replay, Run
+from icage.arrays import FloatArray
+from icage.hand import Placement
+from sim.judge import OUTCOMES
+from sim.recording import Recording, record
+
+FPS: Final = 30
+
+_SECONDS: Final = 15.0
+"""[s] About the length of a film."""
+
+_MOST, _ABOUT, _FEWEST = 10, 9, 6
+"""Closings shown; with fewer each would take too long to watch, so then the film is shorter."""
+
+_WAIT, _HOLD = 0.15, 0.27
+"""[1] Share of a clip that the hand rests before it closes, and after."""
+
+_SETTLED = 1e-3
+"""[diameter, rad] Nothing is seen of a motion that is this near its end."""
+
+_BLUR = 0.04
+"""[1] Share of the motion over which forces are averaged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """F frames of one closing.
+
+    Attributes
+    ----------
+    time:
+        (F,), share of the motion that has passed, 0 to 1.
+    qpos, placements:
+        (F, 6), (F, 4) as in ``sim.recording.Recording``.
+    forces:
+        (F, 3), mean force on each finger over the last few frames: impacts ring faster than
+        anyone can see.
+    """
+
+    run: Run
+    trial: int
+    time: FloatArray
+    qpos: FloatArray
+    placements: FloatArray
+    forces: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def outcome(self) -> str:
+        """How this trial was judged."""
+        return OUTCOMES[int(self.run.verdicts.outcome[self.trial])]
+
+    @property
+    def moving(self) -> tuple[int, int]:
+        """First and last frame of the motion; before and after it nothing changes."""
+        return int((self.time == 0.0).sum()) - 1, int((self.time < 1.0).sum())
+
+
+def clips(done: Replay) -> list[Clip]:
+    """The first closings of every run, some of each: the starts are random already."""
+    per_run = max(1, round(_ABOUT / len(done.runs)))
+    chosen = [
+        (run, trial)
+        for run in done.runs[:_MOST]
+        for trial in range(min(per_run, len(run.closings)))
+    ][:_MOST]
+    frames = round(FPS * _SECONDS / max(len(chosen), _FEWEST))
+    return [_clip(run, trial, frames) for run, trial in chosen]
+
+
+def _clip(run: Run, trial: int, frames: int) -> Clip:
+    start = Placement(*run.starts.placements[trial].tolist())
+    recording = record(run.scene, start, frame_time=0.002, max_frames=5000)
+    waiting, holding = round(_WAIT * frames), round(_HOLD * frames)
+    moving = np.linspace(0.0, 1.0, frames - waiting - holding + 1)[1:]
+    share = np.concatenate([np.zeros(waiting), moving, np.ones(holding)])
+    at = share * _end_of_motion(recording)
+    qpos = _resampled(at, recording.time, recording.qpos)
+    return Clip(
+        run,
+        trial,
+        share,
+        qpos,
+        run.scene.placements(qpos),
+        _averaged(at, recording.time, recording.finger_forces),
+    )
+
+
+def _end_of_motion(recording: Recording) -> float:
+    """When the last visible motion is over, and a little after."""
+    left = np.abs(recording.qpos - recording.qpos[-1]).max(axis=1)
+    moving = np.flatnonzero(left > _SETTLED)
+    last = recording.time[moving[-1]] if len(moving) else 0.0
+    return float(min(max(1.15 * last, 0.02), recording.time[-1]))
+
+
+def _averaged(at: FloatArray, time: FloatArray, rows: FloatArray) -> FloatArray:
+    """Means of the rows over the last ``_BLUR`` before each moment: differences of the integral."""
+    steps = 0.5 * (rows[1:] + rows[:-1]) * np.diff(time)[:, None]
+    integral = np.vstack([np.zeros(rows.shape[1]), np.cumsum(steps, axis=0)])
+    span = max(_BLUR * float(at[-1]), 1e-3)
+    before = np.maximum(at - span, 0.0)
+    mean = _resampled(at, time, integral) - _resampled(before, time, integral)
+    mean /= np.maximum(at - before, 1e-12)[:, None]
+    still = at >= at[-1]
+    mean[still] = rows[-1]
+    return mean
+
+
+def _resampled(at: FloatArray, time: FloatArray, rows: FloatArray) -> FloatArray:
+    return np.column_stack([np.interp(at, time, column) for column in rows.T])

@@ -1,0 +1,142 @@
+"""The page of a film round its main view: title, plots, the object's view, caption."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from experiments.drawing.canvas import Canvas
+from experiments.drawing.object_view import ObjectView
+from experiments.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
+from experiments.drawing.plots import Box, Curve, Level, Plot
+from icage.cage import Cage
+from icage.regions import FingerRegion
+
+if TYPE_CHECKING:
+    from experiments.clips import Clip
+    from experiments.replay import Run
+
+WIDTH, HEIGHT = 1280, 720
+
+MAIN: Final = (840, 632)
+"""Width and height of the main view, in the top left corner."""
+
+_LEFT, _RIGHT = 880.0, 1262.0
+_SIGMA: Final[Box] = (_LEFT, 134.0, 1196.0, 258.0)
+_FORCE: Final[Box] = (_LEFT, 306.0, 1196.0, 402.0)
+_OBJECT: Final[Box] = (_LEFT, 450.0, _RIGHT, 628.0)
+
+_LONGEST_NAME = 40
+"""Characters of a name in the title."""
+
+_TITLE_WIDTH = 560.0
+"""[pixel] of font size times characters: what fits the right column."""
+
+
+class Page:
+    """The page for the clips of one run."""
+
+    def __init__(self, name: str, clips: Sequence[Clip], regions: Sequence[FingerRegion]) -> None:
+        self._name, self._clips = name, clips
+        run = clips[0].run
+        self._object = ObjectView(
+            run.cage, regions, np.array([clip.placements[0] for clip in clips]), _OBJECT
+        )
+        self._plots = [_sigma_plot(run.cage, clip) for clip in clips]
+        self._forces = [_force_plot(clip) for clip in clips]
+
+    def draw_still(self, canvas: Canvas, number: int) -> None:
+        """What does not change during clip ``number``: everything, on a fresh page."""
+        canvas.pixels[:] = 255
+        clip = self._clips[number]
+        canvas.line([[MAIN[0] + 1, 20], [MAIN[0] + 1, MAIN[1] - 12]], RULE, 1.2)
+        title = _short(clip.run.case.name)
+        size = min(24.0, _TITLE_WIDTH / len(title))
+        canvas.text(_LEFT, 42.0, title, size, INK, bold=True)
+        about = "guaranteed set" if clip.run.which == "guaranteed" else "rest of the cage"
+        canvas.text(
+            _LEFT, 70.0, f"{about}, start {clip.trial + 1} of {len(clip.run.closings)}", 17.0,
+            QUIET_INK,
+        )  # fmt: skip
+        self._plots[number].draw_frame(canvas)
+        self._forces[number].draw_frame(canvas)
+        canvas.text(_LEFT, _OBJECT[1] - 9.0, "seen from the object", 15.0, INK)
+        self._object.draw_still(canvas)
+        for earlier in self._clips[:number]:
+            self._object.draw_ways(canvas, earlier.placements, 0.45)
+        _draw_caption(canvas, clip.run)
+
+    def draw_now(self, canvas: Canvas, number: int, frame: int) -> None:
+        """What has happened up to a frame."""
+        clip = self._clips[number]
+        now = float(clip.time[frame])
+        self._plots[number].draw_curve(canvas, Curve(clip.time, clip.placements[:, 3], INK), now)
+        for k, colour in enumerate(FINGERS):
+            curve = Curve(clip.time, clip.forces[:, k], colour)
+            self._forces[number].draw_curve(canvas, curve, now, 1.8)
+        self._object.draw_ways(canvas, clip.placements[: frame + 1], 1.0)
+        self._object.draw_fingers(canvas, clip.placements[frame])
+        if now >= 1.0:
+            _draw_badge(canvas, clip)
+
+
+def _sigma_plot(cage: Cage, clip: Clip) -> Plot:
+    sigma = clip.placements[:, 3]
+    levels = [Level(cage.sigma_0, r"$\sigma_0$", QUIET_INK)]
+    if cage.sigma_first is not None:
+        levels.append(Level(cage.sigma_first, r"$\sigma_{\mathrm{first}}$"))
+    if cage.sigma_max is not None and cage.sigma_max != cage.sigma_first:
+        levels.append(Level(cage.sigma_max, r"$\sigma_{\mathrm{max}}$"))
+    values = [*sigma, *(level.value for level in levels)]
+    low, high = min(values), max(values)
+    room = 0.08 * (high - low)
+    return Plot(_SIGMA, r"opening $\sigma$", 1.0, (low - room, high + room), levels)
+
+
+def _force_plot(clip: Clip) -> Plot:
+    """Impacts may leave the plot; what counts is how the hand presses in the end."""
+    high = 1.25 * max(float(np.quantile(clip.forces, 0.97)), float(clip.forces[-1].max()), 1e-9)
+    return Plot(_FORCE, "finger forces", 1.0, (0.0, high))
+
+
+def _draw_badge(canvas: Canvas, clip: Clip) -> None:
+    """Where this closing ended, in the corner of the main view."""
+    good = clip.outcome == "target" or (clip.outcome == "other_grasp" and clip.run.which == "rest")
+    words = {"target": "target grasp", "other_grasp": "another grasp"}.get(
+        clip.outcome, clip.outcome.replace("_", " ")
+    )
+    canvas.box((20.0, 20.0, 40.0 + 11.5 * (len(words) + 2), 58.0), GOOD if good else BAD)
+    canvas.text(32.0, 46.0, f"{'✓' if good else '✗'} {words}", 19.0, PAPER, bold=True)
+
+
+def _draw_caption(canvas: Canvas, run: Run) -> None:
+    counts, trials = run.counts, len(run.closings)
+    canvas.line([[20, MAIN[1] + 6], [WIDTH - 20, MAIN[1] + 6]], RULE, 1.2)
+    fine = counts["target"] == trials or (
+        run.which == "rest" and counts["target"] + counts["other_grasp"] == trials
+    )
+    parts = [f"{counts['target']} of {trials} closings ended in the target grasp"]
+    if counts["other_grasp"]:
+        parts.append(f"{counts['other_grasp']} in another grasp")
+    parts.append(f"{counts['escaped']} escaped")
+    lost = trials - counts["target"] - counts["other_grasp"] - counts["escaped"]
+    if lost:
+        parts.append(f"{lost} lost")
+    canvas.text(24.0, 674.0, ", ".join(parts), 21.0, INK if fine else BAD, bold=True)
+    cage = run.cage
+    levels = [
+        rf"{name} = {level / cage.sigma_0:.4g} $\sigma_0$"
+        for name, level in (
+            (r"$\sigma_{\mathrm{first}}$", cage.sigma_first),
+            (r"$\sigma_{\mathrm{max}}$", cage.sigma_max),
+        )
+        if level is not None
+    ]
+    shades = "shaded: where each finger's centre may be without the object escaping"
+    canvas.text(24.0, 704.0, ",   ".join([*levels, shades]), 16.0, QUIET_INK, math=True)
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= _LONGEST_NAME else name[: _LONGEST_NAME - 1] + "…"

@@ -1,0 +1,39 @@
+"""Frames into an MP4 that plays everywhere: H.264, yuv420p, with the index at the front."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+from numpy.typing import NDArray
+
+_OPTIONS = ["-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
+
+
+def write_mp4(
+    frames: Iterable[NDArray[np.uint8]], path: Path, size: tuple[int, int], fps: int
+) -> int:
+    """Write frames (height, width, 4); returns how many. ``size`` = (width, height), both even."""
+    count = 0
+    writer = imageio_ffmpeg.write_frames(
+        str(path),
+        size,
+        fps=fps,
+        pix_fmt_in="rgba",
+        pix_fmt_out="yuv420p",
+        codec="libx264",
+        quality=None,
+        macro_block_size=2,
+        output_params=_OPTIONS,
+        ffmpeg_log_level="error",
+    )
+    writer.send(None)
+    try:
+        for frame in frames:
+            writer.send(np.ascontiguousarray(frame))
+            count += 1
+    finally:
+        writer.close()
+    return count

@@ -1,0 +1,125 @@
+"""``replay.mp4``: random starts closing one after another, with everything that tells how it went.
+
+Left the hand's view (MuJoCo's camera where the machine can draw, else the same states in two
+dimensions), right sigma, the finger forces and the object's view, below the counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from experiments.clips import FPS, Clip, clips
+from experiments.drawing.canvas import Canvas, Pixels
+from experiments.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
+from experiments.drawing.hand_view import HandView, window_on
+from experiments.drawing.shapes import tidied
+from experiments.mp4 import write_mp4
+from experiments.replay import Replay, Report, Run
+from icage.regions import FingerRegion
+from sim.camera import RenderingUnavailable, find_backend, render_frames
+from sim.stage import Decor, View
+
+SIZE: Final = (WIDTH, HEIGHT)
+
+RegionsByGrasp = dict[str, tuple[FingerRegion, ...]]
+
+
+def film(
+    done: Replay, name: str, regions: RegionsByGrasp, path: Path, report: Report,
+    camera: bool | None = None,
+) -> None:  # fmt: skip
+    """Write the film of a replay.
+
+    Parameters
+    ----------
+    regions:
+        Caging regions to shade, by name of the grasp.
+    camera:
+        Whether to use MuJoCo's renderer; None for "if it works here".
+    """
+    chosen = clips(done)
+    total = sum(len(clip) for clip in chosen)
+    use_camera = find_backend() is not None if camera is None else camera
+
+    def counted() -> Iterator[Pixels]:
+        for number, frame in enumerate(_frames(chosen, name, regions, use_camera)):
+            report("video", number, total)
+            yield frame
+        report("video", total, total)
+
+    write_mp4(counted(), path, SIZE, FPS)
+
+
+def _frames(
+    chosen: Sequence[Clip], name: str, regions: RegionsByGrasp, use_camera: bool
+) -> Iterator[Pixels]:
+    """All frames, the canvas itself each time."""
+    canvas = Canvas(WIDTH, HEIGHT)
+    for run in dict.fromkeys(clip.run.title for clip in chosen):
+        mine = [clip for clip in chosen if clip.run.title == run]
+        first = mine[0].run
+        shown = _inner(regions[first.case.name])
+        window = window_on(first.scene, np.concatenate([clip.qpos for clip in mine]), *MAIN)
+        hand = HandView(first.scene, window, shown, first.cage.target_placement)
+        page = Page(name, mine, shown)
+        for number, clip in enumerate(mine):
+            page.draw_still(canvas, number)
+            still = canvas.pixels.copy()
+            with ExitStack() as stack:
+                main = _drawn(hand, clip)
+                if use_camera:
+                    main = _photographed(hand, clip, window, shown, stack) or main
+                for frame in range(len(clip)):
+                    canvas.pixels[:] = still
+                    main(canvas, frame)
+                    page.draw_now(canvas, number, frame)
+                    yield canvas.pixels
+
+
+def _inner(regions: Sequence[FingerRegion]) -> list[FingerRegion]:
+    return [region for region in regions if region.bound == "inner"]
+
+
+Painter = Callable[[Canvas, int], None]
+
+
+def _drawn(hand: HandView, clip: Clip) -> Painter:
+    def paint(canvas: Canvas, frame: int) -> None:
+        hand.draw(canvas, clip.qpos[frame], clip.qpos[0])
+
+    return paint
+
+
+def _photographed(
+    hand: HandView, clip: Clip, window: View, regions: Sequence[FingerRegion], stack: ExitStack
+) -> Painter | None:
+    """MuJoCo's frames; those without motion are drawn once. None if the renderer fails."""
+    run: Run = clip.run
+    first, last = clip.moving
+    detail = 2e-3 * run.case.outline.diameter
+    decor = Decor(
+        [(r.finger, tidied(r.geometry, detail)) for r in regions if r.level_name != "sigma_first"],
+        run.cage.target_placement,
+    )
+    frames = render_frames(run.scene, clip.qpos[first : last + 1], window, decor)
+    stack.enter_context(closing(frames))
+    taken: list[NDArray[np.uint8]] = []
+    try:
+        taken.append(next(frames))
+    except RenderingUnavailable:
+        return None
+
+    def paint(canvas: Canvas, frame: int) -> None:
+        wanted = min(max(frame - first, 0), last - first)
+        while len(taken) <= wanted:
+            taken.append(next(frames))
+        canvas.paste(taken[wanted], 0, 0)
+        hand.draw_numbers(canvas, clip.qpos[frame])
+
+    return paint
