@@ -29,17 +29,15 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from tests.oracles.geometry import Floats
 
-Cell = tuple[int, int]
-"""Shell of |w|, sector of arg w (both counted from the target's)."""
-Node = tuple[int, int, int]
-"""Shell, sector, number of a piece of the free set there."""
+Cell = tuple[int, int]  # shell of |w|, sector of arg w, both counted from the target's
+Node = tuple[int, int, int]  # shell, sector, number of a piece of the free set there
 
 SIDES_OF_DISC = 16
 """A disc is replaced by the regular polygon around it: 2 % too large, nowhere too small."""
 SLACK = 1e-9
 """[diameter] Every disc is larger by this, far above the rounding of the overlays."""
 FLOOR = 0.2
-"""[sigma_0] Below it the optimistic hand counts as escaped; the pessimistic one may not go there."""
+"""[sigma_0] Below it the optimistic hand counts as escaped, the pessimistic one does not go."""
 SEED_TURN, SEED_OPENING = 0.15, 0.2
 """[rad], [log sigma] How far from the target the pessimistic flood looks for its seeds."""
 
@@ -50,11 +48,10 @@ class FloodError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Bracket:
-    """sigma_max is in [lower, upper], for certain; ``nodes`` [1] were flooded to find out."""
+    """sigma_max is in [lower, upper], for certain, [unit]."""
 
     lower: float
     upper: float
-    nodes: int
 
     @property
     def width(self) -> float:
@@ -76,8 +73,7 @@ def bracket_sigma_max(outline: Outline, contacts: Floats, step: float) -> Bracke
     lower, upper = below.escape_shell(), above.escape_shell()
     if lower is None or upper is None:
         raise FloodError(f"no way out of the {'eroded' if lower is None else 'dilated'} object")
-    nodes = len(below.reached) + len(above.reached)
-    return Bracket(below.radius(lower), above.radius(upper + 1), nodes)
+    return Bracket(below.radius(lower), above.radius(upper + 1))
 
 
 def never_escapes(outline: Outline, contacts: Floats, step: float) -> bool:
@@ -113,7 +109,7 @@ class Flood:
         self.w_0 = complex(fingers[1] - fingers[0])
         self.d_0 = complex(fingers[0] + self.w_0 * middle)
         self.sectors = math.ceil(math.tau / self.step)
-        # With all sides above the diameter at most one finger is in the hull: the hand is out.
+        # With all sides above the diameter at most one finger is in the hull: it can leave.
         shortest = float(abs(hand.z - np.roll(hand.z, 1)).min()) * abs(self.w_0)
         highest = max(1.0, self.outline.diameter / shortest)
         self.shells = tuple(round(math.log(part) / self.step) for part in (FLOOR, 1.1 * highest))
@@ -151,8 +147,7 @@ class Flood:
     def _beside(self, nodes: Iterable[Node], moves: tuple[Cell, ...], level: int) -> set[Node]:
         """Nodes not reached yet, up to shell ``level``, one move from a node and overlapping it.
 
-        Diagonal moves are not needed: a path through the corner of four grid cells is, at that
-        corner, in all four.
+        No diagonal moves: a path through the corner of four grid cells is there in all four.
         """
         steps = [
             (self._pieces[shell, sector][piece], (shell + up, (sector + turn) % self.sectors))
@@ -209,18 +204,15 @@ class Flood:
     def _seeds(self, shell: int) -> set[Node]:
         """Nodes of the shell that are joined to the target without any flood.
 
-        Optimistic: the pieces at the target. Pessimistic: no piece holds the target, so those
-        into which the hand goes straight from the target.
+        Optimistic: the pieces at the target. Pessimistic: the pieces straight ahead of it.
         """
+        if shell * self.step > (0.0 if self.optimistic else SEED_OPENING):
+            return set()
         if self.optimistic:
             self._overlay([(0, 0)])
             home = shapely.Point(self.d_0.real, self.d_0.imag)
             at_home = shapely.intersects(self._pieces[0, 0], home)
-            return (
-                {(0, 0, int(piece)) for piece in np.flatnonzero(at_home)} if shell == 0 else set()
-            )
-        if shell * self.step > SEED_OPENING:
-            return set()
+            return {(0, 0, int(piece)) for piece in np.flatnonzero(at_home)}
         turns = round(SEED_TURN / self.step)
         cells = [(shell, turn % self.sectors) for turn in range(-turns, turns + 1)]
         self._overlay(cells)
@@ -251,7 +243,7 @@ def middle_of_hand(z: NDArray[np.complex128]) -> complex:
 
 
 def rim(outline: Outline, radius: float) -> shapely.Geometry:
-    """A set holding every point within ``radius`` [unit] of the edges: polygons swept along them."""
+    """A set with every point within ``radius`` [unit] of the edges: discs swept along them."""
     turns = np.arange(SIDES_OF_DISC) * (math.tau / SIDES_OF_DISC)
     size = (radius + SLACK * outline.diameter) / math.cos(math.pi / SIDES_OF_DISC)
     disc = size * np.column_stack([np.cos(turns), np.sin(turns)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import json
 import math
 from pathlib import Path
@@ -13,8 +14,8 @@ import pytest
 from icage.formats.case_json import Case, parse_case
 from icage.planner import plan
 from tests.conftest import CASES
-from tests.oracles import overlay_flood
-from tests.oracles.overlay_flood import Bracket, bracket_sigma_max, never_escapes
+from tests.oracles import grid_flood
+from tests.oracles.grid_flood import Bracket, bracket_sigma_max, never_escapes
 
 WIDEST = 0.03
 """[1] Relative width of a bracket that we accept; a planted 5 % error then always fails."""
@@ -43,7 +44,9 @@ def load(name: str) -> tuple[Case, dict[str, Any]]:
     return parse_case(data, CASES), data["expected"]
 
 
-def bracket_of(name: str, case: Case) -> Bracket:
+@functools.cache
+def bracket_of(name: str) -> Bracket:
+    case, _ = load(name)
     return bracket_sigma_max(case.outline, case.contacts, (STEPS | SLOW_STEPS)[name])
 
 
@@ -52,7 +55,7 @@ def bracket_of(name: str, case: Case) -> Bracket:
 )
 def test_sigma_max_lies_in_the_bracket_and_five_percent_off_does_not(name: str) -> None:
     case, expected = load(name)
-    bracket = bracket_of(name, case)
+    bracket = bracket_of(name)
     sigma_max = plan(case.outline, case.contacts, case.finger_radius).sigma_max
     print(f"{name}: [{bracket.lower:.6g}, {bracket.upper:.6g}] {bracket.width:.2%}, {sigma_max=}")
     assert bracket.width <= WIDEST
@@ -65,19 +68,20 @@ def test_sigma_max_lies_in_the_bracket_and_five_percent_off_does_not(name: str) 
 @pytest.mark.slow
 def test_bracket_refutes_the_search_without_tunnel_edges() -> None:
     """3.4 % too high: the known mistake of the paper's method on this case (theory.md)."""
-    case, expected = load("tunnel_golden")
-    assert not bracket_of("tunnel_golden", case).admits(expected["sigma_max_without_tunnel_edges"])
+    _, expected = load("tunnel_golden")
+    assert not bracket_of("tunnel_golden").admits(expected["sigma_max_without_tunnel_edges"])
 
 
 def test_bracket_of_the_triangle_holds_the_closed_form() -> None:
     """Unit triangle, fingers at the mid-points: it falls out at its own height, sqrt(3) / 2."""
     case, _ = load("triangle_eq_best")
-    bracket = bracket_sigma_max(case.outline, case.contacts, 0.03)
+    bracket = bracket_sigma_max(case.outline, case.contacts, 0.05)
     assert bracket.admits(math.sqrt(3.0) / 2.0)
-    finer = bracket_sigma_max(case.outline, case.contacts, 0.015)
+    finer = bracket_sigma_max(case.outline, case.contacts, 0.025)
     assert finer.width < 0.7 * bracket.width
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUCK)
 def test_never_escapes_is_proved_by_the_optimistic_flood(name: str) -> None:
     case, _ = load(name)
@@ -91,7 +95,7 @@ def test_a_cage_that_opens_is_not_proved_to_hold() -> None:
 
 
 def test_the_flood_shares_only_value_types_with_the_planner() -> None:
-    tree = ast.parse(Path(overlay_flood.__file__).read_text())
+    tree = ast.parse(Path(grid_flood.__file__).read_text())
     imported = {n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
     imported |= {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
     ours = {name for name in imported if name and name.split(".")[0] in ("icage", "sim")}
