@@ -163,8 +163,7 @@ class Flood:
             if (*cell, number) not in self.reached
         ]
         here, there = (np.array([way[side] for way in ways], dtype=object) for side in (0, 1))
-        meet = shapely.intersects(here, there)
-        return {way[2] for way, met in zip(ways, meet, strict=True) if met}
+        return {ways[n][2] for n in np.flatnonzero(shapely.intersects(here, there))}
 
     def _overlay(self, cells: Iterable[Cell]) -> None:
         """Fill in the pieces of free d over grid cells: the box minus three shifted objects."""
@@ -176,8 +175,7 @@ class Flood:
         for k, z_k in enumerate(self.z):
             copies = np.array([self._seen_by_finger(shell)[k] for shell, _ in new], dtype=object)
             points, owner = shapely.get_coordinates(copies, return_index=True)
-            shift = (middles * z_k)[owner]
-            moved = points - np.column_stack([shift.real, shift.imag])
+            moved = points - np.column_stack([(middles * z_k).real, (middles * z_k).imag])[owner]
             blocked.append(shapely.set_coordinates(copies, moved))
         free = shapely.difference(self.box, shapely.union_all(np.array(blocked), axis=0))
         for cell, geometry in zip(new, free, strict=True):
