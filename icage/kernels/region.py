@@ -17,8 +17,8 @@ import numpy as np
 from icage.kernels.compiled import compiled
 from icage.kernels.facet import MAX_EDGES
 
-CORNERS = 200
-_ROUNDS = 9
+CORNERS = 320
+_ROUNDS = 14
 _CENTRE_CUTS = 40
 
 
@@ -42,10 +42,37 @@ def _rows(pieces, z, i, finger, piece, rows, n):
 
 
 @compiled
-def cut(rows, n, x, y, level):
-    """A line with e + g . (q - p) <= 0 on the whole set: (e, g_x, g_y, sum of multipliers).
+def _line(rows, level, x, y, r, m_r, a, m_a, b, m_b):
+    """The line that non-negative multipliers of up to three rows prove, seen from p = (x, y).
 
-    e <= 0 means that p = (x, y) itself is in the set (of the other two fingers' constraints).
+    Any w there has |w| >= sum m c(q) / |sum m g|, so sum m c(q) - level |sum m g| <= 0 holds for
+    every q of the set, whatever rounding did to the multipliers. Returns (e, g_x, g_y, sum m).
+    """
+    sx = m_r * rows[r, 0]
+    sy = m_r * rows[r, 1]
+    hx = -m_r * rows[r, 2]
+    hy = -m_r * rows[r, 3]
+    c = m_r * rows[r, 4]
+    if m_a > 0.0:
+        sx += m_a * rows[a, 0]
+        sy += m_a * rows[a, 1]
+        hx -= m_a * rows[a, 2]
+        hy -= m_a * rows[a, 3]
+        c += m_a * rows[a, 4]
+    if m_b > 0.0:
+        sx += m_b * rows[b, 0]
+        sy += m_b * rows[b, 1]
+        hx -= m_b * rows[b, 2]
+        hy -= m_b * rows[b, 3]
+        c += m_b * rows[b, 4]
+    return c + hx * x + hy * y - level * math.hypot(sx, sy), hx, hy, m_r + m_a + m_b
+
+
+@compiled
+def cut(rows, n, x, y, level):
+    """Is p = (x, y) outside the set, and a line with e + g . (q - p) <= 0 on all of the set.
+
+    Returns (outside, e, g_x, g_y, sum of multipliers); only the other two fingers' constraints.
     """
     wx = 0.0
     wy = 0.0
@@ -76,23 +103,17 @@ def cut(rows, n, x, y, level):
                     hi = b / a
                     at_hi = q
             elif b > 1e-13 * level:
-                return b, -rows[r, 2] - rows[q, 2], -rows[r, 3] - rows[q, 3], 2.0
+                e, hx, hy, weight = _line(rows, level, x, y, r, 1.0, q, 1.0, q, 0.0)
+                return True, e, hx, hy, weight
         if lo > hi:
-            a_lo = rows[at_lo, 1] * gx - rows[at_lo, 0] * gy
-            a_hi = rows[at_hi, 1] * gx - rows[at_hi, 0] * gy
-            m_lo = -a_hi
-            m_hi = a_lo
+            m_lo = -(rows[at_hi, 1] * gx - rows[at_hi, 0] * gy)
+            m_hi = rows[at_lo, 1] * gx - rows[at_lo, 0] * gy
             m_r = -(
                 m_lo * (rows[at_lo, 0] * gx + rows[at_lo, 1] * gy)
                 + m_hi * (rows[at_hi, 0] * gx + rows[at_hi, 1] * gy)
             )
-            m_r = max(m_r, 0.0)
-            hx = -(m_r * rows[r, 2] + m_lo * rows[at_lo, 2] + m_hi * rows[at_hi, 2])
-            hy = -(m_r * rows[r, 3] + m_lo * rows[at_lo, 3] + m_hi * rows[at_hi, 3])
-            e = m_r * rows[r, 4] + m_lo * rows[at_lo, 4] + m_hi * rows[at_hi, 4]
-            # outside for certain; its excess may round to nothing where three rows just meet
-            excess = max(e + hx * x + hy * y, 1e-16 * level)
-            return excess, hx, hy, m_r + m_lo + m_hi
+            e, hx, hy, weight = _line(rows, level, x, y, r, max(m_r, 0.0), at_lo, m_lo, at_hi, m_hi)
+            return True, e, hx, hy, weight
         s = 0.0
         first = r
         second = -1
@@ -106,19 +127,15 @@ def cut(rows, n, x, y, level):
         wy = by + s * gx
     norm = math.hypot(wx, wy)
     if norm <= level or first < 0:
-        return norm - level, 0.0, 0.0, 0.0
+        return False, norm - level, 0.0, 0.0, 0.0
     m_1 = 1.0
     m_2 = 0.0
     if second >= 0:
         det = rows[first, 0] * rows[second, 1] - rows[first, 1] * rows[second, 0]
         m_1 = max(0.0, (wx * rows[second, 1] - wy * rows[second, 0]) / det / norm)
         m_2 = max(0.0, (rows[first, 0] * wy - rows[first, 1] * wx) / det / norm)
-    hx = -m_1 * rows[first, 2]
-    hy = -m_1 * rows[first, 3]
-    if second >= 0:
-        hx -= m_2 * rows[second, 2]
-        hy -= m_2 * rows[second, 3]
-    return norm - level, hx, hy, m_1 + m_2
+    e, hx, hy, weight = _line(rows, level, x, y, first, m_1, second, m_2, second, 0.0)
+    return True, e, hx, hy, weight
 
 
 @compiled
@@ -137,8 +154,8 @@ def _shoot(rows, n, x0, y0, x1, y1, level, tiny):
     for _ in range(60):
         x = x0 + t * dx
         y = y0 + t * dy
-        e, gx, gy, weight = cut(rows, n, x, y, level)
-        if e <= 0.0:
+        outside, e, gx, gy, weight = cut(rows, n, x, y, level)
+        if not outside:
             break
         slope = gx * dx + gy * dy
         if slope <= 0.0:  # only rounding: the cut runs along the ray, from where it starts
@@ -281,7 +298,8 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
     hx[0], hy[0] = x0, y0
     cx = x0
     cy = y0
-    all_corners = True
+    share = 0.0
+    thin = True  # hardly any of the outer polygon is known to be inside
     for _ in range(_ROUNDS):
         if _area(px, py, m) - _area(hx, hy, nh) < enough:
             break
@@ -293,54 +311,68 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
         for a in range(before):
             if skip[a] or m > CORNERS - 8 or nb > CORNERS - 8:
                 continue
-            if not all_corners and _beyond(tx[a], ty[a], hx, hy, nh) < 0.25 * enough:
+            if nh > 2 and _beyond(tx[a], ty[a], hx, hy, nh) <= share:
                 continue
             todo += 1
-            e, gx, gy, weight = cut(rows, n, tx[a], ty[a], level)
-            if e > 0.0:  # the corner's own cut takes it off for certain
-                m = _clip(
-                    px, py, done, m, e, gx, gy, tx[a], ty[a], 1e-3 * tiny * weight, qx, qy, qdone
-                )
-                px[:m] = qx[:m]
-                py[:m] = qy[:m]
-                done[:m] = qdone[:m]
-            x, y, inside, ce, gx, gy, ex, ey, weight = _shoot(
+            outside, e, gx, gy, weight = cut(rows, n, tx[a], ty[a], level)
+            if not outside:
+                bx[nb], by[nb] = tx[a], ty[a]
+                nb += 1
+                for b in range(m):
+                    if px[b] == tx[a] and py[b] == ty[a]:
+                        done[b] = True
+                continue
+            x, y, inside, ce, cgx, cgy, ex, ey, cw = _shoot(
                 rows, n, cx, cy, tx[a], ty[a], level, tiny
             )
             bx[nb], by[nb] = x, y
             nb += 1
-            if e <= 0.0:
-                for b in range(m):
-                    if px[b] == tx[a] and py[b] == ty[a]:
-                        done[b] = True
-            elif not inside:
-                m = _clip(px, py, done, m, ce, gx, gy, ex, ey, 1e-3 * tiny * weight, qx, qy, qdone)
-                px[:m] = qx[:m]
-                py[:m] = qy[:m]
-                done[:m] = qdone[:m]
-        if m < 3 or (todo == 0 and all_corners):
+            # of the corner's own cut and the one nearest to the set the deeper; both while the set
+            # looks like less than an area
+            if not inside:
+                depth = ce + cgx * (tx[a] - ex) + cgy * (ty[a] - ey)
+                deeper = depth * math.hypot(gx, gy) > e * math.hypot(cgx, cgy)
+                if thin and m < CORNERS - 4:
+                    spare = 1e-3 * tiny * cw
+                    m = _clip(px, py, done, m, ce, cgx, cgy, ex, ey, spare, qx, qy, qdone)
+                    px[:m] = qx[:m]
+                    py[:m] = qy[:m]
+                    done[:m] = qdone[:m]
+                    deeper = False
+                if deeper:
+                    e, gx, gy, weight = ce, cgx, cgy, cw
+                else:
+                    ex, ey = tx[a], ty[a]
+            else:
+                ex, ey = tx[a], ty[a]
+            m = _clip(px, py, done, m, e, gx, gy, ex, ey, 1e-3 * tiny * weight, qx, qy, qdone)
+            px[:m] = qx[:m]
+            py[:m] = qy[:m]
+            done[:m] = qdone[:m]
+        if m < 3:
             break
-        # far corners of a thin set add little to its hull one by one: if none seems worth it, take
-        # them all
-        all_corners = todo == 0 or nh < 3
+        # corners of a thin set add little to its hull one by one: where none seems worth it though
+        # the areas still differ, ask for less
+        share = enough / (2.0 * m) if todo > 0 or share == 0.0 else 0.25 * share
         nh = _hull(bx, by, nb, qx, qy)
         hx[:nh] = qx[:nh]
         hy[:nh] = qy[:nh]
         bx[:nh] = qx[:nh]
         by[:nh] = qy[:nh]
         nb = nh
+        thin = _area(hx, hy, nh) < 0.01 * _area(px, py, m)
         # shoot from well inside: the middle of the outer polygon, cut down until it is in the set
         # (the position given may lie on the boundary, where rays along it see nothing)
         for _ in range(_CENTRE_CUTS):
             ox, oy = _centroid(px, py, m)
-            e, gx, gy, weight = cut(rows, n, ox, oy, level)
-            if e <= 0.0:
+            outside, e, gx, gy, weight = cut(rows, n, ox, oy, level)
+            if not outside:
                 cx = ox
                 cy = oy
                 bx[nb], by[nb] = cx, cy
                 nb += 1
                 break
-            if nh > 2:
+            if not thin:
                 cx = hx[:nh].mean()
                 cy = hy[:nh].mean()
                 break
