@@ -17,9 +17,10 @@ import numpy as np
 import shapely
 
 from icage.arrays import FloatArray
-from icage.errors import GraspError
+from icage.errors import GeometryError, GraspError
+from icage.exterior import without_straight_vertices
 from icage.outline import Outline
-from icage.tolerance import CONTACT_OFF, MERGE_VERTEX
+from icage.tolerance import COLLISION, CONTACT_OFF, MERGE_VERTEX
 
 
 class Offsets(NamedTuple):
@@ -34,24 +35,52 @@ class Offsets(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """The arc round one convex vertex: directions from ``start`` counterclockwise by ``turn``."""
+    """The arc round one convex vertex: directions from ``start`` counterclockwise by ``turn``.
+
+    ``ends`` (2, 2) are its end points, ``anchors`` (2, 2) points well inside the strips beside it.
+    """
 
     vertex: FloatArray
     start: float
     turn: float
+    ends: FloatArray
+    anchors: FloatArray
 
 
-def arcs(outline: Outline) -> list[Arc]:
+class _Strips(NamedTuple):
+    """The rectangles outside the edges: start and end of each edge, and the offset to its rim."""
+
+    start: FloatArray
+    end: FloatArray
+    out: FloatArray
+
+
+def _strips(outline: Outline, radius: float) -> _Strips:
+    a = without_straight_vertices(outline.vertices, outline.diameter)
+    b = np.roll(a, -1, axis=0)
+    side = b - a
+    length = np.hypot(side[:, 0], side[:, 1])
+    return _Strips(a, b, radius * np.column_stack([side[:, 1], -side[:, 0]]) / length[:, None])
+
+
+def arcs(outline: Outline, radius: float) -> list[Arc]:
     """Arcs of the grown object, one per convex vertex (also those that others cover)."""
-    points = outline.vertices
-    side = np.roll(points, -1, axis=0) - points
+    a, b, out = _strips(outline, radius)
+    side = b - a
     heading = np.arctan2(side[:, 1], side[:, 0])
-    before = np.roll(heading, 1)
-    turn = (heading - before + np.pi) % (2.0 * np.pi) - np.pi
-    return [
-        Arc(points[k], float(before[k]) - 0.5 * math.pi, float(turn[k]))
-        for k in np.flatnonzero(turn > 1e-9)
-    ]
+    turn = (heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi
+    found: list[Arc] = []
+    for k in np.flatnonzero(turn > 0.0).tolist():
+        back = np.minimum(0.25, 0.5 * radius / np.hypot(*side[k - 1])) * side[k - 1]
+        ahead = np.minimum(0.25, 0.5 * radius / np.hypot(*side[k])) * side[k]
+        found.append(
+            Arc(
+                a[k], float(heading[k - 1]) - 0.5 * math.pi, float(turn[k]),
+                np.array([b[k - 1] + out[k - 1], a[k] + out[k]]),
+                np.array([a[k] + 0.5 * out[k - 1] - back, a[k] + 0.5 * out[k] + ahead]),
+            )
+        )  # fmt: skip
+    return found
 
 
 def offsets(
@@ -68,34 +97,38 @@ def offsets(
         Segments of an arc per quadrant.
     through:
         For arc number -> directions [rad] at which both polygons must touch the true curve.
+
+    Raises
+    ------
+    GeometryError:
+        The union came out wrong: our fault, and never a polygon with a crack in it.
     """
     wanted = through or {}
-    inner = [outline.polygon, *_strips(outline, radius)]
+    strips = _strips(outline, radius)
+    inner = [outline.polygon]
+    inner += [shapely.Polygon([p, p + n, q + n, q]) for p, q, n in zip(*strips, strict=True)]
     outer = list(inner)
-    sagitta = 0.0
-    for number, arc in enumerate(arcs(outline)):
-        chords, tangents, widest = _split(arc, radius, segments, wanted.get(number, ()))
+    widest = 0.0
+    for number, arc in enumerate(arcs(outline, radius)):
+        chords, tangents, step = _split(arc, radius, segments, wanted.get(number, ()))
         inner.append(chords)
         outer.append(tangents)
-        sagitta = max(sagitta, radius * (1.0 - math.cos(0.5 * widest)))
-    grown, holes = _exterior(inner, outline, radius)
-    grown_out, _ = _exterior(outer, outline, radius)
+        widest = max(widest, step)
+    sagitta = radius * (1.0 - math.cos(0.5 * widest))
+    grown, holes = _exterior(inner, outline, radius, sagitta)
+    grown_out, _ = _exterior(outer, outline, radius, sagitta)
     return Offsets(grown, grown_out, holes, sagitta)
-
-
-def _strips(outline: Outline, radius: float) -> list[shapely.Polygon]:
-    """A rectangle outside every edge; its corners are the ends of the arcs, bit for bit."""
-    a = outline.vertices
-    b = np.roll(a, -1, axis=0)
-    side = b - a
-    out = radius * np.column_stack([side[:, 1], -side[:, 0]]) / np.hypot(*side.T)[:, None]
-    return [shapely.Polygon([p, p + n, q + n, q]) for p, q, n in zip(a, b, out, strict=True)]
 
 
 def _split(
     arc: Arc, radius: float, segments: int, through: tuple[float, ...]
 ) -> tuple[shapely.Polygon, shapely.Polygon, float]:
-    """The fan of chords and the fan of tangents of one arc, and its widest step [rad]."""
+    """The fan of chords and the fan of tangents of one arc, and its widest step [rad].
+
+    A fan that only abutted on its strips, their common edge rounded differently on either side,
+    would leave a crack of no width down to the object, and a finger would crawl into it. So the
+    ends are the strips' own corners and the fan reaches into both strips.
+    """
     stops = sorted(
         {0.0, arc.turn, *(t for t in (_along(arc, x) for x in through) if t is not None)}
     )
@@ -109,8 +142,10 @@ def _split(
     middle = at[:-1] + 0.5 * step
     reach = radius / np.cos(0.5 * step)
     corners = arc.vertex + reach[:, None] * np.column_stack([np.cos(middle), np.sin(middle)])
-    chords = shapely.Polygon([arc.vertex, *on_arc])
-    tangents = shapely.Polygon([arc.vertex, on_arc[0], *corners, on_arc[-1]])
+    first, last = arc.ends
+    into, out_of = arc.anchors
+    chords = shapely.Polygon([arc.vertex, into, first, *on_arc[1:-1], last, out_of])
+    tangents = shapely.Polygon([arc.vertex, into, first, *corners, last, out_of])
     return chords, tangents, float(step.max())
 
 
@@ -120,17 +155,20 @@ def _along(arc: Arc, direction: float) -> float | None:
     return t if 1e-9 < t < arc.turn - 1e-9 else None
 
 
-def _exterior(parts: list[shapely.Polygon], outline: Outline, radius: float) -> tuple[Outline, int]:
-    """Outer ring of the union and the number of holes.
-
-    The union is noded on a grid far below MERGE_VERTEX: ends that belong together but differ in
-    the last digit become one point.
-    """
+def _exterior(
+    parts: list[shapely.Polygon], outline: Outline, radius: float, sagitta: float
+) -> tuple[Outline, int]:
+    """Outer ring of the union and the number of holes; no vertex nearer than the chords allow."""
     grid = 1e-3 * MERGE_VERTEX * (outline.diameter + radius)
     grown = shapely.union_all(parts, grid_size=grid)
     if not isinstance(grown, shapely.Polygon):
-        raise GraspError(f"growing the outline by {radius} gives a {grown.geom_type}")
+        raise GeometryError(f"growing the outline by {radius} gives a {grown.geom_type}")
     ring = shapely.get_coordinates(grown.exterior)[:-1]
+    gap = np.atleast_1d(shapely.distance(shapely.points(ring), outline.polygon))
+    if float(gap.min()) < radius - sagitta - COLLISION * outline.diameter:
+        raise GeometryError(
+            f"growing the outline by {radius} left a crack: a vertex only {gap.min()} away"
+        )
     holes = [h for h in grown.interiors if shapely.Polygon(h).area > grid * outline.diameter]
     return Outline(ring), len(holes)
 
@@ -141,7 +179,7 @@ def directions_on_arcs(
     """Arc number -> directions of the contacts (finger centres) that lie on it."""
     size = outline.diameter
     found: dict[int, tuple[float, ...]] = {}
-    for number, arc in enumerate(arcs(outline)):
+    for number, arc in enumerate(arcs(outline, radius)):
         for point in contacts:
             x, y = point - arc.vertex
             if abs(math.hypot(x, y) - radius) <= CONTACT_OFF * size:

@@ -32,8 +32,8 @@ def kernel_digest() -> str:
 def compiled(function: Function) -> Function:
     """Compile without fast-math (results must not depend on it) and cache on disk."""
     dispatcher: Any = numba.njit(cache=True, fastmath=False)(function)
-    cache: Any = getattr(dispatcher, "_cache", None)
-    index: Any = getattr(cache, "_index_file", None)
-    if index is not None and hasattr(index, "_source_stamp"):
-        index._source_stamp = kernel_digest()
+    if numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+        return dispatcher
+    # private names of numba's, checked by a test: without them the cache would go stale unseen
+    dispatcher._cache._cache_file._source_stamp = kernel_digest()
     return dispatcher

@@ -27,6 +27,10 @@ MAX_BASE = 2 * MAX_EDGES + 2
 MAX_ROWS = (MAX_EDGES + 2) * (MAX_EDGES + 2) + MAX_BASE
 _EPS = 2.220446049250313e-16
 
+CLEARANCE = 2e-14
+"""[diameter] Touching is free: a facet that is empty by no more than this counts as open, so that
+the rounding of a turned drawing cannot close a passage of no width. Values are not relaxed."""
+
 
 @compiled
 def _base_rows(pieces, z, finger, piece, i, px, py, ex, ey, base, count):
@@ -45,7 +49,9 @@ def _base_rows(pieces, z, finger, piece, i, px, py, ex, ey, base, count):
         base[count, 1] = ux * ny - uy * nx
         base[count, 2] = nx * ex + ny * ey
         base[count, 3] = nx * dx + ny * dy
-        base[count, 4] = 4.0 * _EPS * (abs(dx) + abs(dy) + pieces.scale * (1.0 + size))
+        base[count, 4] = CLEARANCE * pieces.scale + 4.0 * _EPS * (
+            abs(dx) + abs(dy) + pieces.scale * size
+        )
         count += 1
     return count
 
@@ -135,8 +141,11 @@ def _careful_rows(pieces, z, finger, piece, i, p, eh_x, el_x, eh_y, el_y, base, 
 
 
 @compiled
-def pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap):
-    """(status, w_x, w_y) in double-double; here tau runs over [0, 1]."""
+def pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, give):
+    """(status, w_x, w_y) in double-double; here tau runs over [0, 1].
+
+    ``give`` moves every edge of the pieces outward.
+    """
     base = np.empty((MAX_BASE, 8))
     rows = np.empty((MAX_ROWS, 6))
     slack = 1e-24 * pieces.scale
@@ -144,6 +153,8 @@ def pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap):
     eh_y, el_y = dd.two_sum(pieces.y[q], -pieces.y[p])
     n = _careful_rows(pieces, z, j, piece_j, i, p, eh_x, el_x, eh_y, el_y, base, 0)
     n = _careful_rows(pieces, z, k, piece_k, i, p, eh_x, el_x, eh_y, el_y, base, n)
+    for a in range(n):
+        base[a, 6], base[a, 7] = dd.sub(base[a, 6], base[a, 7], give, 0.0)
     base[n, :] = 0.0
     base[n, 4] = pieces.scale
     n += 1
@@ -222,7 +233,11 @@ def pass_value(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, worst, base, row
     status, wx, wy = pass_fast(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, worst, base, rows)
     if status == UNSURE:
         tally[1] += 1
-        status, wx, wy = pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap)
+        status, wx, wy = pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, 0.0)
+        if status == INFEASIBLE:
+            status, wx, wy = pass_careful(
+                pieces, z, i, p, q, j, piece_j, k, piece_k, cap, CLEARANCE * pieces.scale
+            )
     if status == INFEASIBLE:
         return np.inf, 0.0, 0.0
     sigma = math.hypot(wx, wy)
