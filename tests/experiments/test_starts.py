@@ -88,7 +88,7 @@ def marginals(cage: Cage, rows: FloatArray) -> list[FloatArray]:
 
 @pytest.mark.parametrize(("name", "which"), [("T", "guaranteed"), ("Z_twofold_multi", "rest")])
 def test_starts_are_uniform_like_plain_rejection(name: str, which: StartSet):
-    cage, count = cage_of(name), 10_000
+    cage, count = cage_of(name), 6_000
     plain = marginals(cage, plain_rejection(cage, which, count, seed=11))
     drawn = draw_starts(cage, which, count, np.random.default_rng(12)).placements
     for ours, theirs in zip(marginals(cage, drawn), plain, strict=True):
@@ -97,7 +97,7 @@ def test_starts_are_uniform_like_plain_rejection(name: str, which: StartSet):
     rng = np.random.default_rng(13)
     share = drawn[:, 3] / drawn[:, 3].sum()
     biased = marginals(cage, drawn[rng.choice(count, count, p=share)])
-    assert min(ks_2samp(a, b).pvalue for a, b in zip(biased, plain, strict=True)) < 1e-5
+    assert min(ks_2samp(a, b).pvalue for a, b in zip(biased, plain, strict=True)) < 1e-4
 
 
 def test_a_wrong_least_sigma_does_not_go_unseen(monkeypatch: pytest.MonkeyPatch):

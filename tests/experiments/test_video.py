@@ -31,7 +31,7 @@ def silent(stage: str, done: int, total: int) -> None:
 
 @pytest.fixture(scope="module")
 def done() -> Replay:
-    return replay([t_case()], 6, 1, 2, silent)
+    return replay([t_case()], 3, 1, 2, silent)
 
 
 def frames_of(path: Path) -> tuple[dict[str, Any], Iterator[NDArray[np.uint8]]]:
@@ -95,7 +95,7 @@ def test_a_renderer_that_fails_is_replaced(
 def test_clips_show_the_trials_that_were_counted(done: Replay):
     (run,) = done.runs
     shown = clips.clips(done)
-    assert [clip.trial for clip in shown] == list(range(6))
+    assert [clip.trial for clip in shown] == [0, 1, 2]
     for clip in shown:
         assert clip.outcome == "target"
         assert clip.placements[0] == pytest.approx(run.starts.placements[clip.trial], abs=1e-9)
@@ -122,6 +122,7 @@ def test_a_curve_meets_its_levels_and_grows():
     assert red.max() == pytest.approx(100, abs=5)
 
 
+@pytest.mark.slow
 def test_importing_leaves_the_choice_of_opengl_alone():
     code = (
         "import os, experiments.video, experiments.commands.replay; "
