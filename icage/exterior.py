@@ -15,6 +15,7 @@ import shapely
 from icage.arrays import FloatArray, IntArray
 from icage.convex import merge_convex, triangulate
 from icage.hand import HandShape
+from icage.kernels.straight import corners
 from icage.outline import Outline
 from icage.tolerance import MERGE_VERTEX
 
@@ -68,7 +69,6 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
     """
     bound = MERGE_VERTEX * diameter
     points = np.asarray(vertices)
-    n = len(points)
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     side = after - before
     off = np.abs(
@@ -79,32 +79,9 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
     short = np.hypot(*(points - before).T) <= bound
     if bool((sharp & ~short).all()):
         return points
-    start = int(np.argmax(off * (sharp & ~short)))
-    kept = [start]
-    pending: list[int] = []
-    for step in range(1, n + 1):
-        k = (start + step) % n
-        pending.append(k)
-        if not _straight(points, kept[-1], pending, bound):
-            kept.append(pending[-2])
-            pending = [k]
-    return points[sorted(set(kept))]
-
-
-def _straight(points: FloatArray, first: int, run: list[int], bound: float) -> bool:
-    """Whether the run of vertices goes from ``first`` to its last one on a straight line."""
-    a, b = points[first], points[run[-1]]
-    side = b - a
-    length = float(np.hypot(side[0], side[1]))
-    inner = points[run[:-1]] - a
-    if not len(inner):
-        return True
-    if length <= bound:
-        return bool((np.hypot(inner[:, 0], inner[:, 1]) <= bound).all())
-    along = inner @ side / length
-    off = np.abs(inner[:, 1] * side[0] - inner[:, 0] * side[1]) / length
-    ordered = bool((np.diff(np.concatenate([[0.0], along, [length]])) >= -bound).all())
-    return ordered and bool((off <= bound).all())
+    begin = int(np.argmax(off * (sharp & ~short)))
+    x, y = np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
+    return points[corners(x, y, begin, bound)]
 
 
 def exterior_pieces(

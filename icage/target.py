@@ -16,7 +16,7 @@ from icage.exterior import Pieces
 from icage.hand import HandShape
 from icage.kernels.tree import births
 from icage.solver import Configuration, Terrain
-from icage.tolerance import DEPTH_CUT, SAME_POINT, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import DEPTH_CUT, PLATEAU, SAME_POINT, TARGET_SHIFT, TARGET_TURN
 
 _MAX_CELLS = 20_000
 """Cells round a target that are looked at; a vertex of a fine fan has some tens of pieces."""
@@ -107,6 +107,9 @@ def find_target(
             continue
         ends = terrain.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), value[k, 1], value[k, 2])
         here = nearest_on(ends, wanted)
+        if abs(here.w - wanted.w) <= reach * size < abs(here.d - wanted.d):
+            # the same hand elsewhere: perhaps on a plateau that runs through where it should be
+            here = _slid_to(terrain, cells[k], here, wanted)
         moved = shift_between(terrain.hand, wanted, here) / size
         turned = turn_between(wanted, here)
         if moved > reach or turned > turn or (best is not None and moved >= best.moved):
@@ -115,6 +118,18 @@ def find_target(
             ends = plateau_through(terrain, here, float(value[k, 0]))
             best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
     return best
+
+
+def _slid_to(
+    terrain: Terrain, cell: IntArray, here: Configuration, wanted: Configuration
+) -> Configuration:
+    """The translation of ``here`` inside its cell that is nearest to the wanted configuration."""
+    corners = translations(terrain, cell, here.w)
+    if not corners:
+        return here
+    far = max(corners, key=lambda d: abs(d - here.d))
+    back = max(corners, key=lambda d: abs(d - far))
+    return nearest_on((Configuration(far, here.w), Configuration(back, here.w)), wanted)
 
 
 def nearest_on(ends: tuple[Configuration, Configuration], wanted: Configuration) -> Configuration:
@@ -143,35 +158,63 @@ def plateau_through(
     The hand keeps w, so the set is a segment of d; it is followed from cell to cell.
     """
     size = terrain.pieces.diameter
-    reach = SAME_POINT * size
     ends = [here, here]
     for side in range(2):
         for _ in range(10 * terrain.pieces.total):
             best = ends[side]
-            cells = cells_near(terrain, ends[side], reach)
-            value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
-            for k in range(len(cells)):
-                w = complex(value[k, 1], value[k, 2])
-                if not value[k, 0] <= sigma + DEPTH_CUT * size or abs(w - here.w) > reach:
-                    continue
-                for end in terrain.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), w.real, w.imag):
-                    if _further(here, ends[1 - side], best, end, reach):
-                        best = Configuration(end.d, here.w)
+            cells = cells_near(terrain, best, SAME_POINT * size)
+            low, _ = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+            # beyond the end of a plateau the hand may close further: not a part of it
+            for cell in cells[np.abs(low[:, 0] - sigma) <= DEPTH_CUT * size]:
+                for d in translations(terrain, cell, here.w):
+                    if _further(here, ends[1 - side], best, d, PLATEAU * size):
+                        best = Configuration(d, here.w)
             if best is ends[side]:
                 break
             ends[side] = best
-    if abs(ends[0].d - ends[1].d) <= 1e3 * reach:
+    if abs(ends[0].d - ends[1].d) <= PLATEAU * size:
         return None
     return ends[0], ends[1]
 
 
+def translations(terrain: Terrain, cell: IntArray, w: complex) -> list[complex]:
+    """Corners d of the convex set of hands in a cell that have this very w, to SAME_POINT."""
+    pieces, z = terrain.pieces, terrain.hand.z
+    give = 0.1 * SAME_POINT * pieces.diameter
+    corners: list[complex] = []
+    for finger, k in enumerate(cell.tolist()):
+        s = slice(int(pieces.ptr[k]), int(pieces.ptr[k + 1]))
+        v = pieces.slot_vertex[s]
+        ring = (pieces.x[v] + 1j * pieces.y[v] - w * z[finger]).tolist()
+        normals = (pieces.normal_x[s] + 1j * pieces.normal_y[s]).tolist()
+        if finger == 0:
+            corners = ring
+            continue
+        for a, n in zip(ring, normals, strict=True):
+            corners = _cut(corners, a, n, give)
+    return corners
+
+
+def _cut(corners: list[complex], a: complex, n: complex, give: float) -> list[complex]:
+    """The part of a convex polygon on the free side of the line through a, or ``give`` beyond."""
+    inside = [((c - a) * n.conjugate()).real + give for c in corners]
+    kept: list[complex] = []
+    for k, (p, u) in enumerate(zip(corners, inside, strict=True)):
+        q, v = corners[(k + 1) % len(corners)], inside[(k + 1) % len(corners)]
+        if u >= 0.0:
+            kept.append(p)
+        if (u > 0.0 > v) or (v > 0.0 > u):
+            kept.append(p + u / (u - v) * (q - p))
+    return kept
+
+
 def _further(
-    here: Configuration, other: Configuration, best: Configuration, end: Configuration, reach: float
+    here: Configuration, other: Configuration, best: Configuration, d: complex, reach: float
 ) -> bool:
-    """Whether ``end`` lies further from ``here`` than ``best``, on the side away from ``other``."""
-    if abs(end.d - here.d) <= abs(best.d - here.d) + reach:
+    """Whether d lies further from ``here`` than ``best``, on the side away from ``other``."""
+    if abs(d - here.d) <= abs(best.d - here.d) + reach:
         return False
-    return ((end.d - here.d) * np.conj(other.d - here.d)).real <= 0.0
+    return ((d - here.d) * np.conj(other.d - here.d)).real <= 0.0
 
 
 def contacts_as_configuration(terrain: Terrain, contacts: FloatArray) -> Configuration:

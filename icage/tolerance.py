@@ -53,3 +53,6 @@ SIGMA_FIRST_SPREAD: Final = 1e-3
 
 REGION_LEVEL: Final = 1e-9
 """[1] Regions are drawn this far (relative) below their level: at it the puncture opens."""
+
+PLATEAU: Final = 1e-6
+"""[diameter] A set of minima longer than this is a plateau; shorter ones are rounding."""

@@ -91,5 +91,5 @@ def test_the_document_is_consistent(path: Path) -> None:
 
 def test_reasons() -> None:
     by_name = {path.stem: load(path)[0] for path in CASES if "not" in path.stem}
-    assert "close further" in str(by_name["rectangle_notcage"].why)
+    assert "slide" in str(by_name["rectangle_notcage"].why)
     assert "no equilibrium" in str(by_name["stretching_not_a_cage"].why)

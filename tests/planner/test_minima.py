@@ -21,15 +21,7 @@ SAME = 1e-7
 """[diameter]"""
 
 
-PARALLEL = (
-    "T_best", "L_best", "cross_multi", "Z_twofold_multi", "hook_deep_multi", "notched_bar_best",
-)  # fmt: skip
-SLIDES = pytest.mark.xfail(reason="grasps_of_hand lists points that slide between parallel edges")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=SLIDES) if n in PARALLEL else n for n in NAMES]
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_all_grasps_of_a_hand(name: str) -> None:
     case = solved(name)
     strict = [m.contacts for m in all_minima(case.ring, case.hand) if not m.plateau]

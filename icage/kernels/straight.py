@@ -1,0 +1,55 @@
+"""Which vertices of a ring carry no corner."""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from icage.kernels.compiled import compiled
+
+
+@compiled
+def _straight(x, y, first, start, count, bound):
+    """Whether ``count`` vertices from ``start`` lead from vertex ``first`` on a straight line."""
+    n = len(x)
+    last = (start + count - 1) % n
+    sx = x[last] - x[first]
+    sy = y[last] - y[first]
+    length = math.hypot(sx, sy)
+    before = 0.0
+    for k in range(count - 1):
+        px = x[(start + k) % n] - x[first]
+        py = y[(start + k) % n] - y[first]
+        if length <= bound:
+            if math.hypot(px, py) > bound:
+                return False
+            continue
+        along = (px * sx + py * sy) / length
+        if abs(py * sx - px * sy) > bound * length or along < before - bound:
+            return False
+        before = along
+    return length <= bound or length >= before - bound
+
+
+@compiled
+def corners(x, y, begin, bound):
+    """Marks (n,) of the vertices to keep: the others lie within ``bound`` of the kept ones' chords.
+
+    ``begin`` is a vertex that is kept for certain. Greedy: a run grows while it stays straight.
+    """
+    n = len(x)
+    keep = np.zeros(n, np.bool_)
+    keep[begin] = True
+    last = begin
+    start = (begin + 1) % n
+    count = 0
+    for step in range(1, n + 1):
+        count += 1
+        if not _straight(x, y, last, start, count, bound):
+            last = (begin + step - 1) % n
+            keep[last] = True
+            start = (begin + step) % n
+            count = 1
+    return keep
