@@ -2,7 +2,7 @@
 
 A minimum is held by forces on at most four contacts (Caratheodory in the four unknowns d, w), so
 it is the least |w| on the lines of one of these sets: three edges; a concave vertex and an edge;
-two concave vertices; a concave vertex and two edges; two parallel edges (a plateau). Every set is
+two concave vertices; a concave vertex and two edges; two or three parallel edges (a plateau). Every set is
 solved as a linear problem and then judged by its forces. Cubic in the number of edges: for small
 polygons. Our own, next to [Bunis2018, Sec. IV-C].
 """
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tests.oracles.geometry import Floats, Ring, fingers_of, row, size_of
 from tests.oracles.planar_closing import close_hand
-from tests.oracles.statics import is_strict_minimum
+from tests.oracles.statics import is_strict_minimum, squeezing_forces
 
 Contact = tuple[int, int]
 """(finger, edge): the finger is on the line of the edge."""
@@ -109,9 +109,42 @@ def _plateaus(ring: Ring, hand: NDArray[np.complex128]) -> list[Minimum]:
             for low, high in _slides(ring, hand, a, b, i, j, thick):
                 middle = 0.5 * (low + high)
                 if all(_holds(ring, hand, q) for q in (low, middle, high)):
-                    fingers = fingers_of(middle, hand)
-                    found.append(Minimum(middle, fingers, size_of(middle), True))
+                    found.append(_plateau(middle, hand))
+    for edges in product(range(len(ring)), repeat=3):
+        ends = _triple_slide(ring, hand, edges)
+        if ends is not None and all(_holds(ring, hand, q) for q in (*ends, sum(ends) / 2.0)):
+            found.append(_plateau(sum(ends) / 2.0, hand))
     return found
+
+
+def _plateau(q: Floats, hand: NDArray[np.complex128]) -> Minimum:
+    return Minimum(q, fingers_of(q, hand), size_of(q), True)
+
+
+def _triple_slide(
+    ring: Ring, hand: NDArray[np.complex128], edges: tuple[int, ...]
+) -> tuple[Floats, Floats] | None:
+    """Both ends of the slide with fingers 1, 2, 3 on three parallel edges, the forces balanced."""
+    n = ring.normals[edges[0]]
+    if any(abs(float(ring.tangents[edges[0]] @ ring.normals[e])) > 1e-12 for e in edges):
+        return None
+    level = np.array([float(ring.starts[e] @ n) for e in edges])
+    arms = np.array([row(n, hand[k])[2:] for k in range(3)])
+    matrix = arms[1:] - arms[0]
+    if abs(np.linalg.det(matrix)) < 1e-9:
+        return None
+    w = np.linalg.solve(matrix, level[1:] - level[0])
+    rows = np.array([row(ring.normals[e], hand[k]) for k, e in enumerate(edges)])
+    if np.hypot(*w) < 1e-6 * ring.diameter or squeezing_forces(rows, w)[1] > 1e-7:
+        return None
+    t = ring.tangents[edges[0]]
+    sides = np.array([row(t, hand[k])[2:] @ w for k in range(3)])  # along t, from d
+    ends = np.array([sorted((ring.starts[e] @ t, ring.ends[e] @ t)) for e in edges])
+    low, high = float((ends[:, 0] - sides).max()), float((ends[:, 1] - sides).min())
+    if high - low <= 1e-9 * ring.diameter:
+        return None
+    across = (level[0] - float(arms[0] @ w)) * n
+    return tuple(np.concatenate([across + s * t, w]) for s in (low, high))  # type: ignore[return-value]
 
 
 def _slides(

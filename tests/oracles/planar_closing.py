@@ -21,16 +21,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.oracles.geometry import Floats, Ring, fingers_of, size_of
+from tests.oracles.path_check import depth_of_ways
+from tests.oracles.statics import touch
 
 MAX_STEPS = 20_000
-TOUCH = 1e-11
-"""[diameter] A point finger this close to an edge touches it."""
+TOUCH = 1e-9
+"""[diameter] A point finger this close to an edge, on either side, touches it."""
+SLIDE = 5e-3
+"""[diameter] Step of a slide between parallel edges."""
 REACH = 0.08
 """[diameter] No finger moves further in one step."""
 AT_REST = 1e-11
 """[diameter] The hand rests when no finger wants to move further than this."""
 NO_GAIN = 1e-14
 """[diameter] Nor does it move if w does not change: it slides between parallel edges."""
+SLID_OFF = 1e-9
+"""[diameter] A slide led on if sigma fell by more than this."""
 PINCHED = 1e-7
 """[diameter] Below this sigma the object is out of the hand."""
 
@@ -73,16 +79,53 @@ def close_hand(
     worst = max(ring.depth(p, radius) for p in fingers_of(q, hand))
     if worst > 1e-9 * ring.diameter:
         raise ClosingError(f"a finger starts {worst:.3g} inside the object")
-    scaled = np.asarray(q, dtype=np.float64) / ring.diameter
-    end, steps, outcome = _close(
-        ring.starts / ring.diameter, ring.tangents, ring.lengths / ring.diameter, ring.normals,
-        ring.concave, radius / ring.diameter, hand.real.copy(), hand.imag.copy(),
-        scaled, eagerness, MAX_STEPS,
-    )  # fmt: skip
+    end, steps, outcome = _closed(ring, hand, q, radius, eagerness)
+    if outcome == 1:
+        end, more, outcome = _slid_on(ring, hand, end, radius, eagerness)
+        steps += more
     if outcome == 0:
-        raise ClosingError(f"not at rest after {steps} steps, sigma {size_of(end)} diameters")
-    final = end * ring.diameter
-    return Closed(final, fingers_of(final, hand), size_of(final), steps, outcome == 2)
+        raise ClosingError(f"not at rest after {steps} steps, sigma {size_of(end)}")
+    fingers = fingers_of(end, hand)
+    if max(ring.depth(p, radius) for p in fingers) > 10.0 * TOUCH * ring.diameter:
+        raise ClosingError("a finger went through an edge")
+    return Closed(end, fingers, size_of(end), steps, outcome == 2)
+
+
+def _closed(
+    ring: Ring, hand: NDArray[np.complex128], q: Floats, radius: float, eagerness: float
+) -> tuple[Floats, int, int]:
+    """End, number of steps and outcome of the compiled closing."""
+    size = ring.diameter
+    end, steps, outcome = _close(
+        ring.starts / size, ring.tangents, ring.lengths / size, ring.normals, ring.concave,
+        radius / size, hand.real.copy(), hand.imag.copy(),
+        np.asarray(q, dtype=np.float64) / size, eagerness, MAX_STEPS,
+    )  # fmt: skip
+    return end * size, int(steps), int(outcome)
+
+
+def _slid_on(
+    ring: Ring, hand: NDArray[np.complex128], q: Floats, radius: float, eagerness: float
+) -> tuple[Floats, int, int]:
+    """Between parallel edges the hand may slide at no cost: where it can close on, it does."""
+    fingers = fingers_of(q, hand)
+    touches = [touch(ring, p, radius, TOUCH * ring.diameter) for p in fingers]
+    normals = [n for t in touches if t is not None for choice in t.choices for n in choice]
+    if not normals:
+        return q, 0, 1
+    tangent = np.array([-normals[0][1], normals[0][0]])
+    if any(abs(float(tangent @ n)) > 1e-9 for n in normals):
+        return q, 0, 1
+    for way in (SLIDE * ring.diameter * tangent, -SLIDE * ring.diameter * tangent):
+        for k in range(1, int(2.0 / SLIDE)):
+            ways = np.stack([fingers + (k - 1) * way, fingers + k * way], axis=1)
+            if depth_of_ways(ring, ways, radius) > TOUCH * ring.diameter:
+                break
+            there = q + k * np.array([way[0], way[1], 0.0, 0.0])
+            end, steps, outcome = _closed(ring, hand, there, radius, eagerness)
+            if size_of(end) < size_of(q) - SLID_OFF * ring.diameter:
+                return end, steps, outcome
+    return q, 0, 1
 
 
 @numba.njit(cache=True)
@@ -128,10 +171,10 @@ def _best_step(start, tangent, length, normal, concave, radius, zr, zi, q, eager
         x = q[0] + q[2] * zr[k] - q[3] * zi[k]
         y = q[1] + q[2] * zi[k] + q[3] * zr[k]
         for e in range(n):
-            along = (x - start[e, 0]) * tangent[e, 0] + (y - start[e, 1]) * tangent[e, 1]
+            rx, ry = x - start[e, 0], y - start[e, 1]
+            along = rx * tangent[e, 0] + ry * tangent[e, 1]
             t = min(max(along, 0.0), length[e])
-            ux = x - start[e, 0] - t * tangent[e, 0]
-            uy = y - start[e, 1] - t * tangent[e, 1]
+            ux, uy = rx - t * tangent[e, 0], ry - t * tangent[e, 1]
             gap = np.hypot(ux, uy)
             if gap > radius + REACH:
                 continue
@@ -144,7 +187,8 @@ def _best_step(start, tangent, length, normal, concave, radius, zr, zi, q, eager
                 either[choosing, 0], either[choosing, 1] = k, e
                 choosing += 1
             elif not (along <= TOUCH and not concave[e]):
-                _put(rows, count, normal[e, 0], normal[e, 1], 0.0, zr[k], zi[k])
+                side = rx * normal[e, 0] + ry * normal[e, 1]
+                _put(rows, count, normal[e, 0], normal[e, 1], -side, zr[k], zi[k])
                 count += 1
     metric, factor = _metric(zr, zi, eagerness)
     best = np.zeros(4)
@@ -155,7 +199,9 @@ def _best_step(start, tangent, length, normal, concave, radius, zr, zi, q, eager
             k, e = either[c]
             if (choice >> c) & 1:
                 e = e + 1 if e + 1 < n else 0
-            _put(rows, used, normal[e, 0], normal[e, 1], 0.0, zr[k], zi[k])
+            side = (q[0] + q[2] * zr[k] - q[3] * zi[k] - start[e, 0]) * normal[e, 0]
+            side += (q[1] + q[2] * zi[k] + q[3] * zr[k] - start[e, 1]) * normal[e, 1]
+            _put(rows, used, normal[e, 0], normal[e, 1], -side, zr[k], zi[k])
             used += 1
         p = _quadratic_program(metric, factor, q, rows[:used])
         cost = p[2] * (q[2] + 0.5 * p[2]) + p[3] * (q[3] + 0.5 * p[3])
@@ -227,10 +273,10 @@ def _quadratic_program(metric, factor, q, rows):  # type: ignore[no-untyped-def]
                 if share[j] > 1e-13 and force[j] / share[j] < partial:
                     partial, leaving = force[j] / share[j], j
             need = np.inf
-            if full > 1e-20:
+            if full > 0.0:
                 need = -(g[new] @ y - bound[new]) / full
             if need == np.inf and partial == np.inf:
-                return np.zeros(4)  # contradictory rows: cannot be, since p = 0 satisfies all
+                return np.zeros(4)  # contradictory to rounding: the finger is wedged
             t = min(need, partial)
             if need < np.inf:
                 y = y + t * way
@@ -245,24 +291,59 @@ def _quadratic_program(metric, factor, q, rows):  # type: ignore[no-untyped-def]
             for j in range(leaving, held - 1):
                 active[j], force[j] = active[j + 1], force[j + 1]
             held -= 1
+    y = _onto_active(g, bound, active, held, y)
     return np.ascontiguousarray(factor.T) @ y
+
+
+@numba.njit(cache=True)
+def _orthonormal(g, active, held):  # type: ignore[no-untyped-def]
+    """Rows of Q (held, 4) and R with the active normals = Q' R; orthogonalized twice."""
+    base, upper = np.zeros((4, 4)), np.zeros((4, 4))
+    for j in range(held):
+        rest = g[active[j]].copy()
+        for _ in range(2):
+            for i in range(j):
+                part = base[i] @ rest
+                upper[i, j] += part
+                rest = rest - part * base[i]
+        upper[j, j] = np.sqrt(rest @ rest)
+        base[j] = rest / upper[j, j]
+    return base, upper
 
 
 @numba.njit(cache=True)
 def _projected(g, active, held, new):  # type: ignore[no-untyped-def]
     """Part of ``new`` across the active normals, and its coordinates along them."""
+    base, upper = _orthonormal(g, active, held)
+    way = new.copy()
+    along = np.zeros(4)
+    for _ in range(2):
+        for i in range(held):
+            part = base[i] @ way
+            along[i] += part
+            way = way - part * base[i]
     share = np.zeros(4)
-    if held == 0:
-        return new.copy(), share
-    base = np.empty((4, held))
-    for j in range(held):
-        base[:, j] = g[active[j]]
-    gram = base.T @ base
-    found = np.linalg.solve(gram, base.T @ new)
-    way = new - base @ found
-    again = np.linalg.solve(gram, base.T @ way)
-    way = way - base @ again
-    share[:held] = found + again
-    if way @ way < 1e-22:
+    for i in range(held - 1, -1, -1):
+        total = along[i]
+        for j in range(i + 1, held):
+            total -= upper[i, j] * share[j]
+        share[i] = total / upper[i, i]
+    if way @ way < 1e-24:
         way = np.zeros(4)
     return way, share
+
+
+@numba.njit(cache=True)
+def _onto_active(g, bound, active, held, y):  # type: ignore[no-untyped-def]
+    """The nearest point that satisfies the active rows with equality, to the last digits."""
+    base, upper = _orthonormal(g, active, held)
+    for _ in range(2):
+        miss = np.zeros(4)
+        for i in range(held):
+            miss[i] = bound[active[i]] - g[active[i]] @ y
+            for j in range(i):
+                miss[i] -= upper[j, i] * miss[j]
+            miss[i] /= upper[i, i]
+        for i in range(held):
+            y = y + miss[i] * base[i]
+    return y

@@ -52,7 +52,7 @@ def test_target_placements_close_to_the_target(name: str) -> None:
 @pytest.mark.parametrize("name", CAGED_CASES)
 def test_caged_placements_close_to_a_listed_grasp(name: str) -> None:
     case = solved(name)
-    placements = wander(case.cage, ("caged",), np.random.default_rng(12), EACH)
+    placements = wander(case.cage, ("caged",), np.random.default_rng(12), EACH, steps=120)
     assert set(ends(case, placements, 2)) <= {g.id for g in case.cage.grasps}
 
 
@@ -60,7 +60,7 @@ def test_caged_placements_do_end_in_several_grasps() -> None:
     met: set[int | None] = set()
     for name in ("ngon9_best", "cross_multi", "never_escapes_b"):
         case = solved(name)
-        placements = wander(case.cage, ("caged",), np.random.default_rng(12), EACH)
+        placements = wander(case.cage, ("caged",), np.random.default_rng(12), EACH, steps=120)
         met |= {(name, k) for k in ends(case, placements, 2)}  # type: ignore[misc]
     assert len(met) > 4
 

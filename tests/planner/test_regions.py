@@ -26,7 +26,7 @@ def regions_of(case: Solved) -> dict[tuple[int, str], FingerRegion]:
 @pytest.mark.parametrize("name", NAMES)
 def test_fingers_of_caged_placements_are_in_the_outer_regions(name: str) -> None:
     case = solved(name)
-    placements = wander(case.cage, ("target", "caged"), np.random.default_rng(21), 400)
+    placements = wander(case.cage, ("target", "caged"), np.random.default_rng(21), 200)
     below = placements[:, 3] < case.cage.sigma_max * (1.0 - 2e-9)
     fingers = case.cage.hand.fingers(placements[below])
     regions = regions_of(case)
@@ -80,10 +80,11 @@ def test_slices_fill_the_regions_from_inside(name: str) -> None:
     cage = case.cage
     ring = case.ring.polygon
     pockets: list[list[shapely.Geometry]] = [[], [], []]
-    seen = wander(cage, ("target", "caged"), np.random.default_rng(23), 300)[:, 2]
+    seen = wander(cage, ("target", "caged"), np.random.default_rng(23), 150, steps=160)[:, 2]
+    low, high = seen.min() - 0.1 * np.ptp(seen), seen.max() + 0.1 * np.ptp(seen)
     least = min(cage.sigma_0, *(g.sigma for g in cage.grasps))
     for sigma in np.linspace(least, cage.sigma_max * (1.0 - 1e-8), 11)[1:]:
-        for theta in np.linspace(seen.min(), seen.max(), 100):
+        for theta in np.linspace(low, high, 100):
             w = sigma * np.exp(1j * theta)
             for pocket in free_pockets(ring, w * cage.hand.z):
                 inside = pocket.representative_point()

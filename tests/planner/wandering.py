@@ -15,6 +15,13 @@ from icage.membership import VERDICTS, query
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Floats, Ring, load_case, unit_hand
+from tests.oracles.statics import moved, opening_direction
+
+LEVEL = 1e-8
+"""[1] Placements this close to a grasp's or a puncture's sigma are left out: either answer goes."""
+
+
+_LOOKS = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,40 +45,57 @@ def solved(name: str) -> Solved:
 
 
 def wander(
-    cage: Cage, wanted: tuple[str, ...], rng: Generator, count: int, steps: int = 120
+    cage: Cage, wanted: tuple[str, ...], rng: Generator, count: int, steps: int = 80
 ) -> Floats:
-    """``count`` placements (count, 4) whose verdicts are wanted, spread over the whole set.
+    """About ``count`` placements (n, 4) whose verdicts are wanted, spread over the whole set.
 
-    Many walkers start on the plan's grasps and punctures; a step is taken if the query gives a
-    wanted verdict there. Half of the steps are differences of two other walkers, which fits them
-    to thin sets. Walkers may jump through the object: the query alone decides what belongs to
-    the set.
+    Hit and run: walkers start where the grasps open to, look along a random line at points from
+    1e-5 of the grasp's size to all of it away, and go to one that is wanted (or in the cage at
+    least). Half of the lines run along the difference of two other walkers, which fits them to
+    thin sets. They may jump through the object: the query alone decides what belongs to the set.
     """
     codes = [VERDICTS.index(v) for v in wanted]
-    levels = [x for x in (cage.sigma_first, cage.sigma_max, cage.sigma_largest) if x is not None]
-    spread = max(levels, default=cage.sigma_0) - cage.sigma_0
-    from_contacts = [e.contacts for e in (*cage.grasps, *cage.punctures)]
-    starts = np.array([Placement.from_contacts(c).as_array() for c in from_contacts])
-    n = 3 * count
-    at = starts[rng.integers(len(starts), size=n)]
-    taken = np.isin(query(cage, at).verdict, codes)
+    also = [VERDICTS.index(v) for v in ("target", "caged")]
+    scale = np.array([cage.sigma_0, cage.sigma_0, 1.0, cage.sigma_0])
+    seeds = _opened(cage)
+    at = seeds[rng.integers(len(seeds), size=2 * count)]
     for _ in range(steps):
-        if taken.any():  # walkers that have not found the set yet start from those that have
-            lost = np.flatnonzero(~taken)
-            at[lost] = at[rng.choice(np.flatnonzero(taken), len(lost))]
-        size = 10.0 ** rng.uniform(-5.0, 0.2, (n, 1))
-        scale = np.array([cage.sigma_0, cage.sigma_0, 1.0, spread])
-        step = size * scale * rng.normal(size=at.shape)
-        between = rng.permutation(at) - rng.permutation(at)
-        step = np.where(rng.random((n, 1)) < 0.5, step, between * rng.uniform(0.3, 1.2, (n, 1)))
-        tried = at + step
-        tried[:, 3] = np.abs(tried[:, 3])
-        good = np.isin(query(cage, tried).verdict, codes)
-        at[good], taken = tried[good], taken | good
-    found = at[taken][:count]
-    if len(found) < count:
+        n = len(at)
+        random = rng.normal(size=(n, 4)) * scale
+        between = at[rng.integers(n, size=n)] - at[rng.integers(n, size=n)]
+        use = (rng.random(n) < 0.5) & (np.abs(between) > 0.0).any(axis=1)
+        line = np.where(use[:, None], between, random)
+        far = 10.0 ** rng.uniform(-5.0, 0.2, (n, _LOOKS)) * rng.choice([-1.0, 1.0], (n, _LOOKS))
+        tried = at[:, None] + far[..., None] * line[:, None]
+        tried[..., 3] = np.abs(tried[..., 3])
+        verdict = query(cage, tried.reshape(-1, 4)).verdict.reshape(n, _LOOKS)
+        liking = np.where(np.isin(verdict, codes), 8.0, 0.0) + np.isin(verdict, also)
+        chosen = np.argmax(liking * rng.random(liking.shape), axis=1)
+        good = liking[np.arange(n), chosen] > 0.0
+        at = np.where(good[:, None], tried[np.arange(n), chosen], at)
+    settled = [e.sigma for e in (*cage.grasps, *cage.punctures)]
+    near = np.abs(at[:, 3:] / np.array(settled) - 1.0).min(axis=1) < LEVEL
+    right = np.isin(query(cage, at).verdict, codes) & ~near
+    found = np.unique(at[right], axis=0)
+    if len(found) < count // 2:
         raise RuntimeError(f"{len(found)} of {count} walkers found a placement that is {wanted}")
-    return found
+    return rng.permutation(found)[:count]
+
+
+def _opened(cage: Cage) -> Floats:
+    """Placements a little more open than each grasp, clear of the object."""
+    ring = Ring.of(cage.outline.vertices)
+    seeds: list[Floats] = []
+    for grasp in cage.grasps:
+        contacts = np.asarray(grasp.contacts)
+        way = opening_direction(ring, contacts, cage.finger_radius)
+        if way is None:
+            continue
+        steps = cage.outline.diameter * 10.0 ** np.linspace(-8.0, -2.0, 13)
+        opened = [moved(contacts, step * way) for step in steps]
+        rows = np.array([Placement.from_contacts(c).as_array() for c in opened])
+        seeds.append(rows[query(cage, rows).in_cage])
+    return np.vstack(seeds)
 
 
 def as_configurations(placements: Floats) -> Floats:
