@@ -70,16 +70,17 @@ class EscapeLevels:
 
     def __init__(self, terrain: Terrain) -> None:
         self._terrain = terrain
-        self._memory: tuple[IntArray, FloatArray] = new_memory()
+        keys, levels = new_memory()
+        self._memory: tuple[IntArray, FloatArray] = (keys.astype(np.int64), levels)
 
     def of(self, cells: IntArray, sigma: FloatArray) -> FloatArray:
         """Escape level (n,) of each cell (n, 3); where it is not above sigma, any such level."""
         terrain = self._terrain
-        levels, *memory = escape_levels(
+        levels, known, of_known = escape_levels(
             terrain.pieces, terrain.z, cells, sigma, terrain.cap, terrain.worst, CELL_LIMIT,
             *self._memory,
         )  # fmt: skip
-        self._memory = (memory[0], memory[1])
+        self._memory = (np.asarray(known, dtype=np.int64), of_known)
         return levels
 
 

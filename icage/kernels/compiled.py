@@ -32,7 +32,7 @@ def kernel_digest() -> str:
 def compiled(function: Function) -> Function:
     """Compile without fast-math (results must not depend on it) and cache on disk."""
     dispatcher: Any = numba.njit(cache=True, fastmath=False)(function)
-    if numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if not hasattr(dispatcher, "_cache"):  # NUMBA_DISABLE_JIT=1: the plain function
         return dispatcher
     # private names of numba's, checked by a test: without them the cache would go stale unseen
     dispatcher._cache._cache_file._source_stamp = kernel_digest()
