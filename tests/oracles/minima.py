@@ -2,7 +2,7 @@
 
 A minimum is held by forces on at most four contacts (Caratheodory in the four unknowns d, w), so
 it is the least |w| on the lines of one of these sets: three edges; a concave vertex and an edge;
-two concave vertices; a concave vertex and two edges; two or three parallel edges (a plateau). Every set is
+two concave vertices; a concave vertex and two edges; parallel edges (a plateau). Every set is
 solved as a linear problem and then judged by its forces. Cubic in the number of edges: for small
 polygons. Our own, next to [Bunis2018, Sec. IV-C].
 """
