@@ -20,7 +20,13 @@ from icage.arrays import FloatArray
 from icage.errors import GeometryError, GraspError
 from icage.exterior import without_straight_vertices
 from icage.outline import Outline
-from icage.tolerance import COLLISION, CONTACT_OFF, MERGE_VERTEX
+from icage.tolerance import COLLISION, CONTACT_OFF
+
+_APART = 1e-6
+"""[rad] A contact nearer than this to the end of an arc counts as at the end."""
+
+_GRID = 1e-15
+"""[diameter] Noding grid of the union."""
 
 
 class Offsets(NamedTuple):
@@ -152,14 +158,14 @@ def _split(
 def _along(arc: Arc, direction: float) -> float | None:
     """Angle of a direction from the start of the arc, or None if the arc does not contain it."""
     t = (direction - arc.start) % (2.0 * math.pi)
-    return t if 1e-9 < t < arc.turn - 1e-9 else None
+    return t if _APART < t < arc.turn - _APART else None
 
 
 def _exterior(
     parts: list[shapely.Polygon], outline: Outline, radius: float, sagitta: float
 ) -> tuple[Outline, int]:
     """Outer ring of the union and the number of holes; no vertex nearer than the chords allow."""
-    grid = 1e-3 * MERGE_VERTEX * (outline.diameter + radius)
+    grid = _GRID * (outline.diameter + radius)
     grown = shapely.union_all(parts, grid_size=grid)
     if not isinstance(grown, shapely.Polygon):
         raise GeometryError(f"growing the outline by {radius} gives a {grown.geom_type}")

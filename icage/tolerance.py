@@ -11,9 +11,10 @@ from typing import Final
 DEPTH_CUT: Final = 1e-10
 """[diameter] A local minimum of sigma counts if it is deeper than this. [contract; theory.md 1]"""
 
-MERGE_VERTEX: Final = 1e-12
-"""[diameter] Vertices this close to the chord of their neighbours are dropped: a thousand times
-below every published figure, a thousand times above the rounding of a rotated input."""
+MERGE_VERTEX: Final = 3e-10
+"""[diameter] Vertices this close to the chord of their neighbours are dropped: far below every
+published figure, far above the rounding of a rotated input, and above SAME_POINT, so that the
+pieces next to a configuration are those that hold it."""
 
 CONTACT_OFF: Final = 1e-6
 """[diameter] A target contact may lie this far off the (offset) outline. [contract]"""

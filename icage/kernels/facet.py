@@ -29,7 +29,7 @@ _EPS = 2.220446049250313e-16
 
 CLEARANCE = 2e-14
 """[diameter] Touching is free: a facet that is empty by no more than this counts as open, so that
-the rounding of a turned drawing cannot close a passage of no width. Values are not relaxed."""
+the rounding of a turned drawing cannot close a passage of no width."""
 
 
 @compiled
@@ -234,10 +234,11 @@ def pass_value(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, worst, base, row
     if status == UNSURE:
         tally[1] += 1
         status, wx, wy = pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, 0.0)
-        if status == INFEASIBLE:
-            status, wx, wy = pass_careful(
-                pieces, z, i, p, q, j, piece_j, k, piece_k, cap, CLEARANCE * pieces.scale
-            )
+        # as little as will do: in a sliver what is given comes back a thousandfold in sigma
+        give = 1e-3 * CLEARANCE * pieces.scale
+        while status == INFEASIBLE and give <= 1.01 * CLEARANCE * pieces.scale:
+            status, wx, wy = pass_careful(pieces, z, i, p, q, j, piece_j, k, piece_k, cap, give)
+            give *= 10.0
     if status == INFEASIBLE:
         return np.inf, 0.0, 0.0
     sigma = math.hypot(wx, wy)
