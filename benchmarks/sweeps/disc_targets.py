@@ -90,7 +90,8 @@ def main() -> int:
     parser.add_argument("--every-resolution", action="store_true")
     chosen = parser.parse_args()
     began = time.perf_counter()
-    return report("disc_targets", run(judge if chosen.every_resolution else judge_one, chosen), chosen, began)
+    outcomes = run(judge if chosen.every_resolution else judge_one, chosen)
+    return report("disc_targets", outcomes, chosen, began)
 
 
 if __name__ == "__main__":
