@@ -1,8 +1,8 @@
 """Speed of the planner on one core, warm: ``python -m benchmarks.planner [--json FILE]``.
 
-Processor seconds. Every figure is also given as a ratio to a yardstick measured in the same run (sorting two million
-doubles), so that runs on different machines can be compared. Outlines are seeded random stars
-with 100 vertices and targets of every kind; medians over many targets.
+Processor seconds. Every figure is also given as a ratio to a yardstick measured in the same run
+(sorting two million doubles), so that runs on different machines can be compared. Outlines are
+seeded random stars with 100 vertices and targets of every kind; medians over many targets.
 """
 
 from __future__ import annotations
