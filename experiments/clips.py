@@ -15,11 +15,11 @@ from sim.recording import Recording, record
 
 FPS: Final = 30
 
-_SECONDS: Final = 15.0
-"""[s] About the length of a film."""
+_SECONDS, _SHORTEST = 15.0, 10.5
+"""[s] About the length of a film, and the least."""
 
 _MOST, _ABOUT, _FEWEST = 10, 9, 6
-"""Closings shown; with fewer each would take too long to watch, so then the film is shorter."""
+"""Closings shown; fewer than the last would each take too long to watch: a shorter film."""
 
 _WAIT, _HOLD = 0.15, 0.27
 """[1] Share of a clip that the hand rests before it closes, and after."""
@@ -68,15 +68,23 @@ class Clip:
 
 
 def clips(done: Replay) -> list[Clip]:
-    """The first closings of every run, some of each: the starts are random already."""
+    """Some closings of every run: the first, as the starts are random already.
+
+    The last of a run is the first that ended elsewhere than in the target, if one did.
+    """
     per_run = max(1, round(_ABOUT / len(done.runs)))
-    chosen = [
-        (run, trial)
-        for run in done.runs[:_MOST]
-        for trial in range(min(per_run, len(run.closings)))
-    ][:_MOST]
-    frames = round(FPS * _SECONDS / max(len(chosen), _FEWEST))
+    chosen = [(run, trial) for run in done.runs[:_MOST] for trial in _shown(run, per_run)][:_MOST]
+    seconds = max(_SECONDS / max(len(chosen), _FEWEST), _SHORTEST / len(chosen))
+    frames = round(FPS * seconds)
     return [_clip(run, trial, frames) for run, trial in chosen]
+
+
+def _shown(run: Run, count: int) -> list[int]:
+    trials = list(range(min(count, len(run.closings))))
+    elsewhere = np.flatnonzero(run.verdicts.outcome != OUTCOMES.index("target"))
+    if len(elsewhere) and elsewhere[0] not in trials:
+        trials[-1] = int(elsewhere[0])
+    return trials
 
 
 def _clip(run: Run, trial: int, frames: int) -> Clip:

@@ -20,7 +20,7 @@ import pyarrow.parquet as pq
 from experiments.figures import draw_plan, figure_regions
 from experiments.json_out import write_json
 from experiments.plan_json import plan_document
-from experiments.replay import Replay, Run, run_document
+from experiments.replay import Replay, Report, Run, run_document
 from experiments.versions import versions
 from icage.membership import VERDICTS, query
 from icage.regions import FingerRegion
@@ -72,11 +72,17 @@ def write_results(
     return document
 
 
-def regions_by_grasp(done: Replay) -> dict[str, tuple[FingerRegion, ...]]:
+def regions_by_grasp(
+    done: Replay, report: Report | None = None
+) -> dict[str, tuple[FingerRegion, ...]]:
     """The regions a figure shows, once per grasp."""
-    return {
-        run.case.name: figure_regions(run.cage) for run in done.runs if run.which == "guaranteed"
-    }
+    cages = {run.case.name: run.cage for run in done.runs}
+    regions: dict[str, tuple[FingerRegion, ...]] = {}
+    for number, (name, cage) in enumerate(cages.items()):
+        if report is not None:
+            report("regions", number, len(cages))
+        regions[name] = figure_regions(cage)
+    return regions
 
 
 def replay_document(

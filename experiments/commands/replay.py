@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         with whole_folder(folder) as staging, stage_bar() as report:
             done = replay(cases, args.trials, args.seed, args.threads or 0, report)
-            regions = regions_by_grasp(done)
+            regions = regions_by_grasp(done, report)
             write_results(done, name, regions, staging)
             if args.video:
                 from experiments.video import film

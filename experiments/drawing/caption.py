@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
+from matplotlib.text import Text
 
 from experiments.drawing.palette import FINGERS, INK, QUIET_INK
 from experiments.drawing.shapes import scale_bar_length
@@ -16,7 +17,7 @@ from icage.cage import Cage
 ROW = 14.0
 """[pt] From one line to the next."""
 
-_CHIPS, _SYMBOL, _VALUE, _RATIO, _WORDS = 0.0, 36.0, 72.0, 132.0, 192.0
+_CHIPS, _SYMBOL, _VALUE, _RATIO, _WORDS = 0.0, 36.0, 72.0, 136.0, 206.0
 """[pt] Where the columns start, from the left margin."""
 
 LIGHT, DARK = 0.20, 0.42
@@ -64,12 +65,22 @@ def _level(key: str, symbol: str, level: float, cage: Cage, unit: str) -> Line:
     }[key]
     if cage.sigma_first == cage.sigma_max:
         words = "below: closing ends in the target"
-    ratio = rf"$= {level / cage.sigma_0:.4g}\,\sigma_0$"
-    return Line(key, symbol, _length(level, unit), ratio, words)
+    digits = level_digits(cage)
+    ratio = rf"$= {level / cage.sigma_0:.{digits}g}\,\sigma_0$"
+    return Line(key, symbol, _length(level, unit, digits), ratio, words)
 
 
-def _length(value: float, unit: str) -> str:
-    return f"{value:.4g} {unit}"
+def level_digits(cage: Cage) -> int:
+    """Digits that tell sigma_first and sigma_max apart where they differ: 4 to 6."""
+    first, last = cage.sigma_first, cage.sigma_max
+    if first is None or last is None or first == last:
+        return 4
+    ratios = (first / cage.sigma_0, last / cage.sigma_0)
+    return next((n for n in (4, 5) if len({f"{ratio:.{n}g}" for ratio in ratios}) == 2), 6)
+
+
+def _length(value: float, unit: str, digits: int = 4) -> str:
+    return f"{value:.{digits}g} {unit}"
 
 
 def strip_height(lines: tuple[Line, ...]) -> float:
@@ -80,18 +91,30 @@ def strip_height(lines: tuple[Line, ...]) -> float:
 def draw_caption(sheet: Sheet, cage: Cage, lines: tuple[Line, ...], name: str, unit: str) -> None:
     """Name and hand on the first line, then the lines, the scale bar at the right."""
     top = sheet.floor - 16.0
+    phi_1, phi_2 = cage.hand.phi_deg
+    words = rf"$\varphi$ = ({phi_1:.1f}°, {phi_2:.1f}°)"
+    if cage.finger_radius > 0.0:
+        words += f",  finger radius {_length(cage.finger_radius, unit)}"
+    about = sheet.axes.text(sheet.left, top, words, fontsize=8.5, color=QUIET_INK, va="baseline")
     title = sheet.axes.text(
         sheet.left, top, name, fontsize=11, fontweight="bold", color=INK, va="baseline"
     )
-    phi_1, phi_2 = cage.hand.phi_deg
-    about = rf"$\varphi$ = ({phi_1:.1f}°, {phi_2:.1f}°)"
-    if cage.finger_radius > 0.0:
-        about += f",  finger radius {_length(cage.finger_radius, unit)}"
-    after = title.get_window_extent().x1 * 72.0 / sheet.figure.dpi
-    sheet.axes.text(after + 10.0, top, about, fontsize=8.5, color=QUIET_INK, va="baseline")
+    room = sheet.right - sheet.left - _width(about) - 10.0
+    for kept in range(len(name) - 1, 0, -1):
+        if _width(title) <= room:
+            break
+        title.set_text(f"{name[:kept]}…")
+    about.set_x(sheet.left + _width(title) + 10.0)
     for k, line in enumerate(lines):
         _draw_line(sheet, line, top - 6.0 - ROW * (k + 1))
-    _draw_scale_bar(sheet, unit, top)
+    _draw_scale_bar(sheet, unit, top - 6.0 - ROW)
+
+
+def _width(text: Text) -> float:
+    """[pt] How wide a text is on the page."""
+    figure = text.get_figure(root=True)
+    assert figure is not None
+    return float(text.get_window_extent().width * 72.0 / figure.dpi)
 
 
 def _draw_line(sheet: Sheet, line: Line, y: float) -> None:
@@ -124,10 +147,10 @@ def _draw_key(sheet: Sheet, key: str, y: float) -> None:
         )
 
 
-def _draw_scale_bar(sheet: Sheet, unit: str, top: float) -> None:
+def _draw_scale_bar(sheet: Sheet, unit: str, row: float) -> None:
     length = scale_bar_length(100.0 / sheet.main.zoom)
     x_1, x_0 = sheet.right, sheet.right - length * sheet.main.zoom
-    y = top + 1.0
+    y = row - 2.0
     for xs, ys in (
         ((x_0, x_1), (y, y)),
         ((x_0, x_0), (y - 2.5, y + 2.5)),
@@ -135,5 +158,5 @@ def _draw_scale_bar(sheet: Sheet, unit: str, top: float) -> None:
     ):
         sheet.axes.add_line(Line2D(xs, ys, color=INK, lw=1.2, solid_capstyle="butt"))
     sheet.axes.text(
-        0.5 * (x_0 + x_1), y - 11.0, f"{length:g} {unit}", fontsize=8.5, color=INK, ha="center"
+        0.5 * (x_0 + x_1), y + 4.5, f"{length:g} {unit}", fontsize=8.5, color=INK, ha="center"
     )

@@ -58,6 +58,23 @@ def test_no_text_overlaps_another_or_leaves_the_page(name: str):
         assert a.intersection(b).area <= 0.1 * min(a.area, b.area), (one, other)
 
 
+def test_a_long_name_is_cut_to_fit():
+    cage = cage_of("disc_Y")
+    sheet = plan_sheet(cage, (), "W" * 100, "mm")
+    boxes = text_boxes(sheet)
+    width, height = sheet.figure.canvas.get_width_height()
+    assert all(shapely.box(0, 0, width, height).contains(box) for box in boxes.values())
+    assert any("WWW…" in text for text in boxes)
+    for (one, a), (other, b) in combinations(boxes.items(), 2):
+        assert a.intersection(b).area <= 0.1 * min(a.area, b.area), (one, other)
+
+
+def test_levels_that_differ_read_differently():
+    lines = {line.key: line for line in caption_lines(cage_of("pliers_best"), "m")}
+    assert lines["dark"].ratio != lines["light"].ratio
+    assert lines["dark"].value != lines["light"].value
+
+
 @pytest.mark.parametrize("name", ["hammer_best", "cross_multi", "T"])
 def test_every_finger_of_both_hands_is_numbered(name: str):
     numbers = [text.split(" ", 1)[1] for text in text_boxes(sheet_of(name))]
