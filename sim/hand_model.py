@@ -29,8 +29,8 @@ OBJECT_BIT, FINGER_BIT = 1, 2
 """contype of the two sides: fingers touch only the object, never one another. (The planner's
 fingers may pass each other too; the centres meet only when the hand is pinched.)"""
 
-FINGER_COLOURS = ((0.84, 0.24, 0.18), (0.16, 0.55, 0.27), (0.17, 0.39, 0.76))
-"""One colour per finger, in every picture."""
+FINGER_COLOURS = ((0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.0, 0.620, 0.451))
+"""One colour per finger, in every picture: distinct to colour-blind readers."""
 
 _CABLE_DEPTH, _PALM_DEPTH = -0.09, -0.13
 """[diameter] Where the drawn parts lie: below the object, which is seen from above."""
