@@ -116,12 +116,15 @@ def _slid_on(
     tangent = np.array([-normals[0][1], normals[0][0]])
     if any(abs(float(tangent @ n)) > 1e-9 for n in normals):
         return q, 0, 1
-    for way in (SLIDE * ring.diameter * tangent, -SLIDE * ring.diameter * tangent):
-        for k in range(1, int(2.0 / SLIDE)):
-            ways = np.stack([fingers + (k - 1) * way, fingers + k * way], axis=1)
+    for way in (ring.diameter * tangent, -ring.diameter * tangent):
+        gone, step = 0.0, SLIDE
+        while gone < 2.0 and step > 1e-6:
+            ways = np.stack([fingers + gone * way, fingers + (gone + step) * way], axis=1)
             if depth_of_ways(ring, ways, radius) > TOUCH * ring.diameter:
-                break
-            there = q + k * np.array([way[0], way[1], 0.0, 0.0])
+                step *= 0.5  # up to what blocks it
+                continue
+            gone += step
+            there = q + gone * np.array([way[0], way[1], 0.0, 0.0])
             end, steps, outcome = _closed(ring, hand, there, radius, eagerness)
             if size_of(end) < size_of(q) - SLID_OFF * ring.diameter:
                 return end, steps, outcome
