@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -140,6 +141,25 @@ def test_the_cage_lists_every_minimum_in_it(target: Target) -> None:
         assert VERDICTS[answers.verdict[k]] != "collision"
         assert (listed is not None) == bool(answers.in_cage[k])
     assert met - {None} == {g.id for g in cage.grasps}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(20, 32))
+def test_discs_close_on_the_true_arcs_where_the_query_says(number: int) -> None:
+    rng = np.random.default_rng([98, number])
+    target = random_target(rng, radius=rng.uniform(0.01, 0.08))
+    ring, hand = Ring.of(target.vertices), unit_hand(target.contacts)
+    cage = plan(Outline(target.vertices), target.contacts, target.radius)
+    assert cage.verdict == "cage"
+    assert cage.sigma_max <= cage.sigma_max_upper < cage.sigma_max * (1.0 + 1e-4)
+    facts = path_facts(ring, hand, cage.escape_path, cage.contacts, target.radius)
+    assert facts.depth <= 1e-9 * ring.diameter
+    assert facts.sigma_max <= cage.sigma_max_upper * (1.0 + 1e-9)
+    placements = wander(cage, ("target", "caged"), rng, 12, steps=60)
+    answers = query(cage, placements)
+    for row, q in enumerate(as_configurations(placements)):
+        closed = close_hand(ring, hand, q, target.radius)
+        assert grasp_at(cage, closed.contacts, 1e-5 * ring.diameter) in answers.grasps_of(row)
 
 
 def test_a_planted_error_of_the_levels_is_seen() -> None:
