@@ -21,7 +21,7 @@ from icage.outline import Outline
 from icage.planner import cage_on, not_a_cage
 from icage.solver import Search, Terrain, search
 from icage.target import Target, contacts_as_configuration, find_target
-from icage.tolerance import LEVEL, SIGMA_FIRST_SPREAD, SIGMA_MAX_GAP, TARGET_SHIFT
+from icage.tolerance import LEVEL, NOT_A_CAGE, SIGMA_FIRST_SPREAD, SIGMA_MAX_GAP, TARGET_SHIFT
 from icage.true_curve import refine
 from icage.why import why_not
 
@@ -65,6 +65,11 @@ def plan_discs(outline: Outline, hand: HandShape, contacts: FloatArray, radius: 
     cage = cage_on(basis.found.terrain, contacts, basis.target, outline, radius, basis.found)
     if cage.verdict == "not_a_cage":
         return replace(cage, contacts=contacts)
+    sigma_0 = float(np.hypot(*(true[1] - true[0])))
+    if basis.sigma_max / sigma_0 - 1.0 < NOT_A_CAGE:
+        most = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
+        why = f"too shallow to tell: sigma_max / sigma_0 is at most {most / sigma_0:.9g}"
+        return not_a_cage(outline, hand, contacts, why, radius)
     return _bracketed(cage, looks, basis, true, contacts, closed)
 
 
@@ -105,7 +110,7 @@ def _looks(
 def _narrow(looks: list[Look]) -> bool:
     low = max((k.sigma_max for k in looks if k.inner), default=0.0)
     high = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
-    return low == high or high / low - 1.0 < SIGMA_MAX_GAP
+    return low > 0.0 and (low == high or high / low - 1.0 < SIGMA_MAX_GAP)
 
 
 def _look(
@@ -147,7 +152,9 @@ def _bracketed(
     if low > high * (1.0 + 1e-9):
         raise GeometryError(f"inner sigma_max {low} above outer {high}: a planner's error")
     high = max(low, high)
-    firsts = [look.sigma_first for look in looks]
+    # on chords the target itself lies a little below the true one, and so may its neighbours
+    sigma_0 = float(np.hypot(*(true[1] - true[0])))
+    firsts = [max(sigma_0, look.sigma_first) for look in looks]
     first, first_upper = min(*firsts, low), max(firsts)
     if all(look.sigma_first == look.sigma_max for look in looks):
         # nothing comes before the escape anywhere: then its bracket, which is narrower, holds

@@ -25,6 +25,11 @@ from icage.tolerance import COLLISION, CONTACT_OFF
 _APART = 1e-6
 """[rad] A contact nearer than this to the end of an arc counts as at the end."""
 
+_RESTING = 1e-3
+"""[rad] Half the chord on which a contact of an arc rests. Were the contact a corner of the chords,
+its normal would be off by half a step on either side, and a grasp could slide away that the arc
+holds. The chord lies only 5e-7 radii inside."""
+
 _GRID = 1e-15
 """[diameter] Noding grid of the union."""
 
@@ -102,7 +107,8 @@ def offsets(
     segments:
         Segments of an arc per quadrant.
     through:
-        For arc number -> directions [rad] at which both polygons must touch the true curve.
+        For arc number -> directions [rad] at which the outer polygon must touch the true curve
+        and the inner one must have its normal, and lie within 1e-6 radii.
 
     Raises
     ------
@@ -135,24 +141,42 @@ def _split(
     would leave a crack of no width down to the object, and a finger would crawl into it. So the
     ends are the strips' own corners and the fan reaches into both strips.
     """
-    stops = sorted(
-        {0.0, arc.turn, *(t for t in (_along(arc, x) for x in through) if t is not None)}
-    )
-    angles: list[float] = [0.0]
-    for low, high in pairwise(stops):
-        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - 1e-9))
-        angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
-    at = arc.start + np.array(angles)
-    on_arc = arc.vertex + radius * np.column_stack([np.cos(at), np.sin(at)])
+    wanted = [t for t in (_along(arc, x) for x in through) if t is not None]
+    on_arc = arc.vertex + radius * _unit(arc.start + _stops(arc.turn, segments, _resting(wanted)))
+    at = arc.start + _stops(arc.turn, segments, wanted)
     step = np.diff(at)
-    middle = at[:-1] + 0.5 * step
     reach = radius / np.cos(0.5 * step)
-    corners = arc.vertex + reach[:, None] * np.column_stack([np.cos(middle), np.sin(middle)])
+    corners = arc.vertex + reach[:, None] * _unit(at[:-1] + 0.5 * step)
     first, last = arc.ends
     into, out_of = arc.anchors
     chords = shapely.Polygon([arc.vertex, into, first, *on_arc[1:-1], last, out_of])
     tangents = shapely.Polygon([arc.vertex, into, first, *corners, last, out_of])
     return chords, tangents, float(step.max())
+
+
+def _resting(wanted: list[float]) -> list[float]:
+    """Both ends of a short chord round every contact, shorter where two contacts are close."""
+    ends: list[float] = []
+    ordered = sorted(wanted)
+    for k, t in enumerate(ordered):
+        room = [abs(t - u) / 3.0 for u in ordered[max(0, k - 1) : k + 2] if u != t]
+        half = min(_RESTING, *room) if room else _RESTING
+        ends += [t - half, t + half]
+    return ends
+
+
+def _stops(turn: float, segments: int, wanted: list[float]) -> FloatArray:
+    """Angles from 0 to ``turn`` that split an arc, through the wanted ones."""
+    stops = sorted({0.0, turn, *(t for t in wanted if 0.0 < t < turn)})
+    angles: list[float] = [0.0]
+    for low, high in pairwise(stops):
+        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - 1e-9))
+        angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
+    return np.array(angles)
+
+
+def _unit(angle: FloatArray) -> FloatArray:
+    return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _along(arc: Arc, direction: float) -> float | None:

@@ -143,6 +143,20 @@ def test_the_cage_lists_every_minimum_in_it(target: Target) -> None:
     assert met - {None} == {g.id for g in cage.grasps}
 
 
+@pytest.mark.parametrize("number", [0, 1061, 1162, 1280, 1310, 1351, 1517, 1749, 1868])
+def test_disc_grasps_on_arcs_have_levels_in_order(number: int) -> None:
+    """Contacts on arcs, nearly degenerate: each of them once had no answer or a wrong order."""
+    rng = np.random.default_rng([98, number])
+    target = random_target(rng, radius=rng.uniform(0.01, 0.08))
+    cage = plan(Outline(target.vertices), target.contacts, target.radius)
+    assert cage.verdict == "cage"
+    assert np.abs(cage.contacts - target.contacts).max() <= 1e-5 * cage.outline.diameter
+    levels = (cage.sigma_0, cage.sigma_first, cage.sigma_max, cage.sigma_max_upper)
+    assert list(levels) == sorted(levels)
+    assert cage.sigma_max_upper / cage.sigma_max - 1.0 < 1e-4
+    assert [p.sigma for p in cage.punctures] == sorted(p.sigma for p in cage.punctures)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(20, 32))
 def test_discs_close_on_the_true_arcs_where_the_query_says(number: int) -> None:
