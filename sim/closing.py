@@ -28,7 +28,7 @@ def close(scene: Scene, start: Placement) -> ClosingOutcome:
         for _ in range(scene.config.max_steps):
             mj.mj_step(scene.model, data)
             watch.observe(only, data.qpos[None, :], data.qvel[None, :])
-            if any(warning.number for warning in data.warning):
+            if data.warning.number.any():
                 watch.diverged(only)
             if not len(watch.running):
                 break

@@ -72,7 +72,7 @@ def record(
         for step in range(1, scene.config.max_steps + 1):
             mj.mj_step(scene.model, data)
             watch.observe(only, data.qpos[None, :], data.qvel[None, :])
-            if any(warning.number for warning in data.warning):
+            if data.warning.number.any():
                 watch.diverged(only)
             ended = not len(watch.running)
             if ended or step % every == 0:
