@@ -28,6 +28,9 @@ TARGET, CAGED, OTHER, ESCAPES, COLLIDES = range(5)
 
 _GRID = 96
 
+_HELD = 1e-12
+"""[diameter] A piece holds a finger this far outside it: the rounding of a position."""
+
 
 @dataclass(frozen=True, slots=True)
 class Answers:
@@ -125,7 +128,7 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
 
     Notes
     -----
-    About 1 us a placement once the cells outside the cage have been met.
+    About 4 us a placement at 100 vertices once the cells outside the cage have been met.
     """
     rows = checked_placements(placements)
     sigma = rows[:, 3].copy()
@@ -136,13 +139,15 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     target_margin = np.full(len(rows), np.nan)
     in_cage = np.zeros(len(rows), dtype=np.bool_)
     nodes = np.full(len(rows), -1, dtype=np.int64)
-    depth = depth_inside(cage.outline.vertices, fingers.reshape(-1, 2), cage.finger_radius)
-    collides = (depth.reshape(-1, 3) > COLLISION * size).any(axis=1)
-    verdict[collides] = COLLIDES
     work = cage.work
+    found = (
+        np.full((len(rows), 3), -1) if work is None else _locator(work).cells(fingers, _HELD * size)
+    )
+    collides = _collides(cage, fingers, found >= 0)
+    verdict[collides] = COLLIDES
     if work is not None:
         free = np.flatnonzero(~collides)
-        cells = _cells(work, fingers[free], size)
+        cells = _cells(work, fingers[free], found[free], size)
         nodes[free] = _inside_nodes(work, cells)
         _judge_inside(cage, work, sigma, nodes, verdict, margin, target_margin, in_cage)
         _judge_outside(cage, work, rows, free, cells, nodes, verdict, margin)
@@ -163,13 +168,27 @@ def checked_placements(placements: FloatArray) -> FloatArray:
     return rows
 
 
-def _cells(work: CageWork, fingers: FloatArray, size: float) -> IntArray:
+def _collides(cage: Cage, fingers: FloatArray, located: BoolArray) -> BoolArray:
+    """Which hands (n,) have a finger in the object; ``located`` (n, 3) are those a piece holds.
+
+    A point finger in a piece is clear: the pieces touch the object no deeper than MERGE_VERTEX,
+    which is less than COLLISION. The pieces around an inner polygon say nothing about a disc.
+    """
+    asked = ~located if cage.finger_radius == 0.0 else np.ones_like(located)
+    inside = np.zeros(located.shape, dtype=np.bool_)
+    depth = depth_inside(cage.outline.vertices, fingers[asked], cage.finger_radius)
+    inside[asked] = depth > COLLISION * cage.outline.diameter
+    collides: BoolArray = np.any(inside, axis=1)
+    return collides
+
+
+def _cells(work: CageWork, fingers: FloatArray, found: IntArray, size: float) -> IntArray:
     """Cells of collision-free placements; a finger a hair inside the object goes to the nearest."""
-    locator = _locator(work)
-    cells = locator.cells(fingers, 1e-12 * size)
+    cells = found.copy()
     lost = np.flatnonzero((cells < 0).any(axis=1))
     if len(lost):
-        cells[lost] = locator.cells(fingers[lost], 4.0 * max(COLLISION * size, work.sagitta))
+        near = 4.0 * max(COLLISION * size, work.sagitta)
+        cells[lost] = _locator(work).cells(fingers[lost], near)
     return cells
 
 

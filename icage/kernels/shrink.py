@@ -22,11 +22,17 @@ def sees(pieces, ux, uy, vx, vy, tol):
     length = math.hypot(sx, sy)
     if length <= tol:
         return True
+    clear = 2.0 * tol * length
     for k in range(len(pieces.wall_from)):
         p = pieces.wall_from[k]
         q = pieces.wall_to[k]
         px = pieces.x[p]
         py = pieces.y[p]
+        # most walls lie clearly on one side of the segment's line: seen without a root or division
+        cp = sx * (py - uy) - sy * (px - ux)
+        cq = sx * (pieces.y[q] - uy) - sy * (pieces.x[q] - ux)
+        if (cp > clear and cq > clear) or (cp < -clear and cq < -clear):
+            continue
         ex = pieces.x[q] - px
         ey = pieces.y[q] - py
         edge = math.hypot(ex, ey)
@@ -35,8 +41,8 @@ def sees(pieces, ux, uy, vx, vy, tol):
         dv = (ex * (vy - py) - ey * (vx - px)) / edge
         if (du > tol and dv > tol) or (du < -tol and dv < -tol):
             continue
-        sp = (sx * (py - uy) - sy * (px - ux)) / length
-        sq = (sx * (pieces.y[q] - uy) - sy * (pieces.x[q] - ux)) / length
+        sp = cp / length
+        sq = cq / length
         if (sp > tol and sq > tol) or (sp < -tol and sq < -tol):
             continue
         if abs(du) <= tol:
