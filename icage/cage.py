@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from icage.arrays import FloatArray
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
@@ -62,6 +64,33 @@ class CageWork:
 
 
 @dataclass(frozen=True, slots=True)
+class SearchStep:
+    """One node that a search in contact space has met. [Bunis2018, Sec. VI]
+
+    ``kind`` is "minimum" (least node of a convex region), "side" (a finger passes a vertex),
+    "diagonal" (the third finger passes to the next piece of the plane), "wall" (a gluing seam),
+    "tunnel" or "pinch". ``pair`` are the fingers (1..3) on ``edges`` (edge q starts at vertex q).
+    """
+
+    sigma: float
+    pair: tuple[int, int]
+    edges: tuple[int, int]
+    kind: str
+
+
+@dataclass(frozen=True, slots=True)
+class SearchLog:
+    """How a search in contact space went."""
+
+    iterations: tuple[SearchStep, ...]
+    rectangles_explored: int
+    rectangles_total: int
+    nodes: int
+    tunnel_edges_tried: int
+    tunnel_edges_used: int
+
+
+@dataclass(frozen=True, slots=True)
 class Cage:
     """How far a hand on a target grasp may open. Levels in the object's unit.
 
@@ -94,9 +123,33 @@ class Cage:
     min_finger_gap: float | None = None
     """Least distance between two finger centres on the path before its last, pinching segment."""
     warnings: tuple[str, ...] = ()
+    search: SearchLog | None = field(default=None, repr=False, compare=False)
+    """The course of the search, where the method keeps one (contact space)."""
     work: CageWork | None = field(default=None, repr=False, compare=False)
+    """None for ``not_a_cage`` and for methods that cannot answer queries (contact space)."""
 
     @property
     def target_placement(self) -> Placement:
         """The target as a placement of the hand in the object's frame."""
         return Placement.from_contacts(self.contacts)
+
+
+def not_a_cage(
+    outline: Outline, hand: HandShape, contacts: FloatArray, why: str, radius: float = 0.0
+) -> Cage:
+    """The answer for contacts that hold nothing."""
+    sigma = float(np.hypot(*(contacts[1] - contacts[0])))
+    return Cage(
+        outline,
+        hand,
+        radius,
+        contacts,
+        "not_a_cage",
+        why,
+        sigma,
+        sigma,
+        sigma,
+        sigma_max_upper=sigma if radius else None,
+        sigma_first_upper=sigma if radius else None,
+        sigma_first_converged=True if radius else None,
+    )

@@ -12,18 +12,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from icage.arrays import FloatArray
-from icage.cage import Cage, GraspMinimum, Puncture
+from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
+from icage.engine import Engine, Look
 from icage.errors import GeometryError
 from icage.finger import Offsets, check_disc_contacts, directions_on_arcs, offsets
 from icage.hand import HandShape
-from icage.minima import escape_path
 from icage.outline import Outline
-from icage.planner import cage_on, not_a_cage
-from icage.solver import Search, Terrain, search
-from icage.target import Target, contacts_as_configuration, find_target
-from icage.tolerance import LEVEL, NOT_A_CAGE, SIGMA_FIRST_SPREAD, SIGMA_MAX_GAP, TARGET_SHIFT
+from icage.tolerance import (
+    LEVEL,
+    NOT_A_CAGE,
+    SIGMA_FIRST_SPREAD,
+    SIGMA_MAX_GAP,
+    TARGET_SHIFT,
+    TARGET_TURN,
+)
 from icage.true_curve import refine
-from icage.why import why_not
 
 RESOLUTIONS = (16, 24, 32)
 """Segments per quadrant at which sigma_first is always looked at."""
@@ -33,36 +36,30 @@ FINER = (64, 128, 256)
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class ArcLook:
     """One polygon that stands in for the true curve, and what was found round it."""
 
     segments: int
     inner: bool
-    target: Target
-    found: Search
+    look: Look
+    sigma_max: float
+    sigma_first: float
     sagitta: float
 
-    @property
-    def sigma_max(self) -> float:
-        """Escape level on this polygon, inf if there is none."""
-        return self.found.level
 
-    @property
-    def sigma_first(self) -> float:
-        """First level on this polygon."""
-        return self.found.sigma_first()
-
-
-def plan_discs(outline: Outline, hand: HandShape, contacts: FloatArray, radius: float) -> Cage:
+def plan_discs(
+    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, engine: Engine
+) -> Cage:
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     check_disc_contacts(outline, radius, contacts)
     true = _true_target(outline, hand, contacts, radius)
-    looks, closed = _looks(outline, hand, true, radius)
+    looks, closed = _looks(outline, hand, true, radius, engine)
     lower = [look for look in looks if look.inner]
     if not lower:
-        return _nothing_there(outline, hand, contacts, radius)
+        inner = offsets(outline, radius, 32).inner
+        return replace(engine.cage(inner, hand, contacts, outline, radius), contacts=contacts)
     basis = max(lower, key=lambda look: (look.sigma_max, look.segments))
-    cage = cage_on(basis.found.terrain, contacts, basis.target, outline, radius, basis.found)
+    cage = basis.look.cage(contacts, outline, radius)
     if cage.verdict == "not_a_cage":
         return replace(cage, contacts=contacts)
     sigma_0 = float(np.hypot(*(true[1] - true[0])))
@@ -87,11 +84,11 @@ def _true_target(
 
 
 def _looks(
-    outline: Outline, hand: HandShape, true: FloatArray, radius: float
-) -> tuple[list[Look], int]:
+    outline: Outline, hand: HandShape, true: FloatArray, radius: float, engine: Engine
+) -> tuple[list[ArcLook], int]:
     """Inner and outer polygons, refined until sigma_max is bracketed."""
     through = directions_on_arcs(outline, radius, true)
-    looks: list[Look] = []
+    looks: list[ArcLook] = []
     closed = 0
     for segments in (*RESOLUTIONS, *FINER):
         if segments in FINER and _narrow(looks):
@@ -99,7 +96,7 @@ def _looks(
         grown = offsets(outline, radius, segments, through)
         closed = grown.closed_pockets
         for inner in (True, False):
-            look = _look(grown, hand, true, segments, inner, radius if through else 0.0)
+            look = _look(grown, hand, true, segments, inner, radius if through else 0.0, engine)
             if look is not None:
                 looks.append(look)
         if not looks:
@@ -107,42 +104,35 @@ def _looks(
     return looks, closed
 
 
-def _narrow(looks: list[Look]) -> bool:
+def _narrow(looks: list[ArcLook]) -> bool:
     low = max((k.sigma_max for k in looks if k.inner), default=0.0)
     high = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
     return low > 0.0 and (low == high or high / low - 1.0 < SIGMA_MAX_GAP)
 
 
 def _look(
-    grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float
-) -> Look | None:
+    grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float,
+    engine: Engine,
+) -> ArcLook | None:  # fmt: skip
     """The search on one polygon; ``arc`` is the radius of an arc that carries a contact, or 0."""
     polygon = grown.inner if inner else grown.outer
-    terrain = Terrain.around(polygon, hand)
     # on chords a contact of an arc may rest anywhere on its own chord
     chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
-    target = find_target(
-        terrain, contacts_as_configuration(terrain, true), reach=max(TARGET_SHIFT, chord),
-        turn=max(1e-3, 10.0 * chord),
-    )  # fmt: skip
-    if target is None or target.plateau is not None:
+    look = engine.look(
+        polygon, hand, true, max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
+    )
+    if look is None:
         return None
-    found = search(terrain, target.cell, target.sigma_0)
-    if found.gave_up:
-        raise GeometryError(f"the search gave up after {len(found.nodes)} cells")
-    return Look(segments, inner, target, found, grown.sagitta)
-
-
-def _nothing_there(outline: Outline, hand: HandShape, contacts: FloatArray, radius: float) -> Cage:
-    terrain = Terrain.around(offsets(outline, radius, 32).inner, hand)
-    target = find_target(terrain, contacts_as_configuration(terrain, contacts))
-    if target is not None and target.plateau is not None:
-        return cage_on(terrain, contacts, target, outline, radius)
-    return not_a_cage(outline, hand, contacts, why_not(terrain, contacts), radius)
+    return ArcLook(segments, inner, look, look.sigma_max, look.sigma_first, grown.sagitta)
 
 
 def _bracketed(
-    cage: Cage, looks: list[Look], basis: Look, true: FloatArray, contacts: FloatArray, closed: int
+    cage: Cage,
+    looks: list[ArcLook],
+    basis: ArcLook,
+    true: FloatArray,
+    contacts: FloatArray,
+    closed: int,
 ) -> Cage:
     """The cage of the basis polygon with the brackets and the true grasps put in."""
     low = basis.sigma_max
@@ -162,9 +152,9 @@ def _bracketed(
     converged = first == first_upper or first_upper / first - 1.0 <= SIGMA_FIRST_SPREAD
     grasps = _on_true_curve(cage, true)
     path, gap = cage.escape_path, cage.min_finger_gap
-    if best_outer is not None and best_outer.found.escaped:
-        path, gap = escape_path(best_outer.found, best_outer.target)
-        path = np.vstack([grasps[0].placement.as_array(), path])
+    way = best_outer.look.escape_path() if best_outer is not None else None
+    if way is not None:
+        path, gap = np.vstack([grasps[0].placement.as_array(), way[0]]), way[1]
     return replace(
         cage,
         contacts=grasps[0].contacts,
@@ -221,7 +211,7 @@ def _punctures(cage: Cage, first: float) -> tuple[Puncture, ...]:
 
 
 def _warnings(
-    looks: list[Look], low: float, high: float, converged: bool, closed: int
+    looks: list[ArcLook], low: float, high: float, converged: bool, closed: int
 ) -> tuple[str, ...]:
     told: list[str] = []
     if closed:

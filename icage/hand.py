@@ -10,6 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -109,6 +110,11 @@ class HandShape:
         """Fingers at sigma = 1 in the palm frame, (3, 2)."""
         return np.column_stack([self.z.real, self.z.imag])
 
+    def least_gap(self, corners: list[complex]) -> float:
+        """Least distance of two fingers along the polyline of w with these corners."""
+        least = min((_least_norm(a, b) for a, b in pairwise(corners)), default=abs(corners[0]))
+        return least * min(1.0, abs(self.z_3), abs(self.z_3 - 1.0))
+
     def relabelled(self, first: int) -> HandShape:
         """The same hand with finger ``first`` (0, 1, 2) called finger 1, still counterclockwise."""
         a, b, c = (self.z[(first + k) % 3] for k in range(3))
@@ -121,6 +127,15 @@ class HandShape:
         w = rows[..., 3] * np.exp(1j * rows[..., 2])
         f = d[..., None] + w[..., None] * self.z
         return np.stack([f.real, f.imag], axis=-1)
+
+
+def _least_norm(a: complex, b: complex) -> float:
+    """Least |w| on the segment from a to b."""
+    side = b - a
+    if abs(side) == 0.0:
+        return abs(a)
+    t = float(np.clip(-(a * np.conj(side)).real / abs(side) ** 2, 0.0, 1.0))
+    return abs(a + t * side)
 
 
 @dataclass(frozen=True, slots=True)

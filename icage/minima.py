@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import shapely
 
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.solver import Configuration, Search, Terrain, Tree, below_escape
+from icage.statics import free_fingers
 from icage.target import Target, plateau_through
-from icage.tolerance import DEPTH_CUT, FREE_FINGER, LEVEL
+from icage.tolerance import DEPTH_CUT, LEVEL
 
 
 class Joining(NamedTuple):
@@ -93,7 +92,7 @@ def _target_grasp(terrain: Terrain, target: Target) -> GraspMinimum:
         target.sigma_0,
         contacts,
         _plateau_contacts(terrain, target.plateau),
-        free_fingers(terrain, contacts),
+        free_fingers(terrain.outline, contacts),
         target.sigma_0,
     )
 
@@ -113,7 +112,7 @@ def _grasp(
         sigma,
         contacts,
         _plateau_contacts(terrain, plateau),
-        free_fingers(terrain, contacts),
+        free_fingers(terrain.outline, contacts),
         joined_at,
     )
 
@@ -145,7 +144,7 @@ def _intermediate(found: Search, met: list[Joining], ids: dict[int, int]) -> lis
                 "intermediate",
                 joins,
                 contacts,
-                free_fingers(found.terrain, contacts),
+                free_fingers(found.terrain.outline, contacts),
             )
         )
     return punctures
@@ -170,14 +169,9 @@ def path_edges(found: Search) -> list[int]:
 
 def _escape(found: Search) -> Puncture:
     contacts = found.terrain.contacts(found.edge_configuration(escape_edge(found)))
-    return Puncture(found.level, "escape", (), contacts, free_fingers(found.terrain, contacts))
-
-
-def free_fingers(terrain: Terrain, contacts: FloatArray) -> tuple[int, ...]:
-    """Fingers (of 1, 2, 3) that touch nothing."""
-    points = shapely.points(contacts)
-    gap = np.atleast_1d(shapely.distance(points, terrain.outline.polygon.exterior))
-    return tuple(k + 1 for k in range(3) if gap[k] > FREE_FINGER * terrain.pieces.diameter)
+    return Puncture(
+        found.level, "escape", (), contacts, free_fingers(found.terrain.outline, contacts)
+    )
 
 
 def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
@@ -187,19 +181,8 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
     points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
-    smallest = min(_least_norm(a.w, b.w) for a, b in pairwise(points))
     rows = [found.terrain.placement(p) for p in points]
     # the last piece, or the finger that stands still, takes all three
     still = found.terrain.contacts(points[-1])[max(found.standing, 0)]
     rows.append(np.array([*still, rows[-1][2], 0.0]))
-    side = min(1.0, abs(found.terrain.hand.z_3), abs(found.terrain.hand.z_3 - 1.0))
-    return np.array(rows), smallest * side
-
-
-def _least_norm(a: complex, b: complex) -> float:
-    """Least |w| on the segment from a to b."""
-    side = b - a
-    if abs(side) == 0.0:
-        return abs(a)
-    t = float(np.clip(-(a * np.conj(side)).real / abs(side) ** 2, 0.0, 1.0))
-    return abs(a + t * side)
+    return np.array(rows), found.terrain.hand.least_gap([p.w for p in points])

@@ -1,0 +1,52 @@
+"""What a method has to answer about one target on one polygon.
+
+Two methods do, cells and contact space, and disc fingers are built on either.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from icage.arrays import FloatArray
+from icage.cage import Cage
+from icage.hand import HandShape
+from icage.outline import Outline
+
+
+class Look(Protocol):
+    """A strict minimum on one polygon, and the levels round it."""
+
+    @property
+    def sigma_max(self) -> float:
+        """Escape level, [unit]; inf if there is none."""
+        ...
+
+    @property
+    def sigma_first(self) -> float:
+        """First level, [unit]; the escape level if no other minimum comes before it."""
+        ...
+
+    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+        """The cage on this polygon, of an outline and a radius that it stands for."""
+        ...
+
+    def escape_path(self) -> tuple[FloatArray, float] | None:
+        """Placements (k, 4) to a pinched hand and the least finger gap on them, or None."""
+        ...
+
+
+class Engine(Protocol):
+    """A method of computing cages of point fingers."""
+
+    def cage(
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, outline: Outline,
+        radius: float,
+    ) -> Cage:  # fmt: skip
+        """The cage of the contacts on a polygon that stands for an outline and a radius."""
+        ...
+
+    def look(
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> Look | None:
+        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
+        ...
