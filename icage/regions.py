@@ -8,21 +8,31 @@ sigma below the level, always cage is the paper's condition; the joint query is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage, CageWork
 from icage.errors import InputError
-from icage.kernels.region import all_sandwiches
-from icage.solver import Configuration, Terrain
+from icage.kernels.region import all_sandwiches, least_points
+from icage.solver import Terrain
 from icage.tolerance import REGION_LEVEL
 
+Polygons: TypeAlias = NDArray[np.object_]
+"""Polygons of shapely, (n,)."""
+
 _ROUGH = 3e-6
-"""[diameter^2] First try at how much area a cell's inner and outer polygon may differ by."""
+"""[diameter^2] The area of a cell's inner and outer polygon never differs by more than this."""
+_SHARE = 0.3
+"""[1] First try at that difference, over the wanted gap times the largest of the first few sets:
+most regions then are within the gap at once, and tight sets hide more of each other."""
+_FIRST_FEW = 64
 _REFINEMENTS = 6
+_SLACK = 1e-7
+"""[diameter] A set that another covers but for this is left out."""
 _GRID = 1e-9
 """[diameter] Neighbouring cells meet on a common edge: unions are noded on this grid."""
 
@@ -95,16 +105,18 @@ def _bounds(
     terrain = work.search.terrain
     nodes, points = _cells_and_points(work, finger, level)
     size = terrain.pieces.diameter
-    enough = _ROUGH * size**2
+    slack = _SLACK * size
+    enough = _first_try(work, finger, level, gap, nodes[:_FIRST_FEW], points[:_FIRST_FEW])
     inner = outer = shapely.MultiPolygon()
     found = 1.0
     for attempt in range(_REFINEMENTS + 1):
         ins, in_counts, outs, out_counts = all_sandwiches(
-            terrain.pieces, terrain.z, finger, nodes, points, level, enough, 1e-7 * size
+            terrain.pieces, terrain.z, finger, nodes, points, level, enough, slack
         )
-        grid = _grid(outs, out_counts, gap, size)
-        inner = _union(terrain, ins, in_counts, grid)
-        outer = _union(terrain, outs, out_counts, grid)
+        around = _polygons(outs, out_counts)
+        grid = _grid(around, gap, size)
+        inner = _union(terrain, _polygons(ins, in_counts), grid)
+        outer = _union(terrain, around, grid)
         found = 1.0 - inner.area / outer.area if outer.area > 0.0 else 0.0
         if found <= gap:
             break
@@ -113,49 +125,54 @@ def _bounds(
     return inner, outer, max(0.0, found)
 
 
+def _first_try(
+    work: CageWork, finger: int, level: float, gap: float, nodes: IntArray, points: FloatArray
+) -> float:
+    """[unit^2] How much area inner and outer polygon of a cell may differ by at first."""
+    terrain = work.search.terrain
+    size = terrain.pieces.diameter
+    rough = _ROUGH * size**2
+    _, _, outs, out_counts = all_sandwiches(
+        terrain.pieces, terrain.z, finger, nodes, points, level, rough, _SLACK * size
+    )
+    largest = float(shapely.area(_polygons(outs, out_counts)).max(initial=0.0))
+    return min(rough, _SHARE * gap * largest) if largest > 0.0 else rough
+
+
 def _cells_and_points(work: CageWork, finger: int, level: float) -> tuple[IntArray, FloatArray]:
     """Cells of the target's component below the level, and a finger position in each."""
     found, tree = work.search, work.tree
     inside = len(tree.birth)
     use = np.flatnonzero((found.node_level[:inside] <= level) & (tree.birth[:, 0] < level))
     cells = np.ascontiguousarray(found.nodes[use, :3])
-    points = np.array([_least_point(work, int(k), finger) for k in use])
-    return cells, points.reshape(-1, 2)
+    w, at = tree.birth[use, 1:], tree.birth_at[use]
+    points = least_points(
+        found.terrain.pieces, found.terrain.z, finger, cells,
+        w[:, 0], w[:, 1], at[:, 0].astype(np.int64), at[:, 1].astype(np.int64),
+    )  # fmt: skip
+    return cells, points
 
 
-def _least_point(work: CageWork, node: int, finger: int) -> tuple[float, float]:
-    """Where a finger is at the least sigma of a cell."""
-    _, wx, wy = work.tree.birth[node]
-    at, slot = work.tree.birth_at[node]
-    terrain = work.search.terrain
-    a, b = terrain.on_edge(work.search.nodes[node, :3], int(at), int(slot), wx, wy)
-    f = terrain.fingers(Configuration(0.5 * (a.d + b.d), a.w))[finger]
-    return float(f.real), float(f.imag)
+def _polygons(corners: FloatArray, counts: IntArray) -> Polygons:
+    """The convex polygons of a sandwich; those of fewer than three corners are left out."""
+    full = counts >= 3
+    ring = np.repeat(np.cumsum(full) - 1, counts)
+    keep = np.repeat(full, counts)
+    rings = shapely.linearrings(corners[keep], indices=ring[keep])
+    return np.asarray(shapely.polygons(rings), dtype=np.object_)
 
 
-def _grid(corners: FloatArray, counts: IntArray, gap: float, size: float) -> float:
+def _grid(polygons: Polygons, gap: float, size: float) -> float:
     """Noding grid, [unit]: ``_GRID``, or less where a thin region would be lost on it."""
-    thickest = 0.0
-    start = 0
-    for n in counts.tolist():
-        ring = shapely.Polygon(corners[start : start + n])
-        thickest = max(thickest, ring.area / ring.length if ring.length > 0.0 else 0.0)
-        start += n
+    length = shapely.length(polygons)
+    thickness = shapely.area(polygons)[length > 0.0] / length[length > 0.0]
+    thickest = float(thickness.max(initial=0.0))
     return float(np.clip(1e-3 * gap * thickest, 1e-14 * size, _GRID * size))
 
 
-def _union(
-    terrain: Terrain, corners: FloatArray, counts: IntArray, grid: float
-) -> shapely.MultiPolygon:
+def _union(terrain: Terrain, polygons: Polygons, grid: float) -> shapely.MultiPolygon:
     """Union of convex polygons in the object's frame, outer rings counterclockwise."""
-    counts_list = counts.tolist()
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    rings = [
-        shapely.Polygon(corners[a : a + n])
-        for a, n in zip(starts[:-1].tolist(), counts_list, strict=True)
-        if n >= 3
-    ]
-    united = shapely.union_all(rings, grid_size=grid) if rings else shapely.MultiPolygon()
+    united = shapely.union_all(polygons, grid_size=grid)
     parts = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
     moved = shapely.transform(shapely.MultiPolygon(parts), lambda xy: xy + terrain.origin)
     oriented = [shapely.orient_polygons(p) for p in shapely.get_parts(moved)]

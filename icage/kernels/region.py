@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from icage.kernels.compiled import compiled
-from icage.kernels.facet import MAX_EDGES
+from icage.kernels.facet import MAX_BASE, MAX_EDGES, finger_on_segment
 
 CORNERS = 320
 _ROUNDS = 14
@@ -414,6 +414,32 @@ def _covered(outer, m, inner_store, inner_start, inner_count, held, n_held, slac
         if holds:
             return True
     return False
+
+
+@compiled
+def least_points(pieces, z, i, cells, wx, wy, standing, slots):
+    """Where finger i is at the least sigma of every cell (n, 3): points (n, 2).
+
+    There w = (wx, wy) and the finger ``standing`` is on the edge ``slots`` of its piece.
+    """
+    points = np.empty((len(cells), 2))
+    base = np.empty((MAX_BASE, 5))
+    for row in range(len(cells)):
+        a = standing[row]
+        b = (a + 1) % 3
+        c = (a + 2) % 3
+        slot = slots[row]
+        piece = cells[row, a]
+        after = slot + 1 if slot + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
+        xa, ya, xb, yb = finger_on_segment(
+            pieces, z, a, pieces.slot_vertex[slot], pieces.slot_vertex[after],
+            b, cells[row, b], c, cells[row, c], wx[row], wy[row], base,
+        )  # fmt: skip
+        ux = z[i, 0] - z[a, 0]
+        uy = z[i, 1] - z[a, 1]
+        points[row, 0] = 0.5 * (xa + xb) + wx[row] * ux - wy[row] * uy
+        points[row, 1] = 0.5 * (ya + yb) + wx[row] * uy + wy[row] * ux
+    return points
 
 
 @compiled
