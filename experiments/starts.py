@@ -26,7 +26,7 @@ from icage.cage import Cage
 from icage.errors import GeometryError, IcageError
 from icage.kernels.locate import depth_inside
 from icage.membership import TARGET, query
-from icage.regions import caging_regions
+from icage.regions import outer_bounds
 
 StartSet = Literal["guaranteed", "rest"]
 
@@ -150,7 +150,7 @@ class _Box:
             top = safe_level(cage.sigma_max, cage.sigma_0)
             level, floor = None, min(grasp.sigma for grasp in cage.grasps)
         room = _ROOM * cage.outline.diameter
-        outer = [r.geometry for r in caging_regions(cage, level, _GAP) if r.bound == "outer"]
+        outer = outer_bounds(cage, level, _GAP)
         regions = [geometry.buffer(room, join_style="mitre") for geometry in outer]
         pairs = ((0, 1), (1, 2), (2, 0))
         z = cage.hand.z

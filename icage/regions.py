@@ -71,23 +71,49 @@ def caging_regions(
     InputError:
         The level is not between sigma_0 and sigma_max, or the gap not in (0, 1).
     """
-    if not 0.0 < gap < 1.0:
-        raise InputError(f"area gap {gap}; a number between 0 and 1 is needed")
     work = cage.work
     if work is None:
         return ()
-    top = cage.sigma_max if cage.sigma_max is not None else work.search.terrain.cap
-    chosen = top if level is None else float(level)
-    if not cage.sigma_0 < chosen <= top:
-        raise InputError(f"level {chosen}; above sigma_0 = {cage.sigma_0}, up to {top} is allowed")
+    chosen, below = _levels(cage, work, level, gap)
     name = _level_name(cage, chosen)
-    below = min(chosen, work.search.level) * (1.0 - REGION_LEVEL)
     regions: list[FingerRegion] = []
     for finger in range(3):
         inner, outer, found = _bounds(work, finger, below, gap)
         regions.append(FingerRegion(finger + 1, name, chosen, "inner", found, inner))
         regions.append(FingerRegion(finger + 1, name, chosen, "outer", found, outer))
     return tuple(sorted(regions, key=lambda r: (r.bound != "inner", r.finger)))
+
+
+def outer_bounds(
+    cage: Cage, level: float | None = None, gap: float = 1e-3
+) -> tuple[shapely.MultiPolygon, ...]:
+    """The outer bounds alone, at a third of the price: nobody checks that they are within ``gap``.
+
+    They hold the regions as surely as those of ``caging_regions``. Raises what it raises.
+    """
+    work = cage.work
+    if work is None:
+        return ()
+    _, below = _levels(cage, work, level, gap)
+    size = work.search.terrain.pieces.diameter
+    bounds: list[shapely.MultiPolygon] = []
+    for finger in range(3):
+        nodes, points = _cells_and_points(work, finger, below)
+        enough = _first_try(work, finger, below, gap, nodes, points)
+        _, around = _sandwiches(work, finger, below, enough, nodes, points)
+        bounds.append(_union(work.search.terrain, around, _grid(around, gap, size)))
+    return tuple(bounds)
+
+
+def _levels(cage: Cage, work: CageWork, level: float | None, gap: float) -> tuple[float, float]:
+    """The level asked for, checked, and the one just below it that is computed with."""
+    if not 0.0 < gap < 1.0:
+        raise InputError(f"area gap {gap}; a number between 0 and 1 is needed")
+    top = cage.sigma_max if cage.sigma_max is not None else work.search.terrain.cap
+    chosen = top if level is None else float(level)
+    if not cage.sigma_0 < chosen <= top:
+        raise InputError(f"level {chosen}; above sigma_0 = {cage.sigma_0}, up to {top} is allowed")
+    return chosen, min(chosen, work.search.level) * (1.0 - REGION_LEVEL)
 
 
 def _level_name(cage: Cage, level: float) -> str:
@@ -105,22 +131,18 @@ def _bounds(
     terrain = work.search.terrain
     nodes, points = _cells_and_points(work, finger, level)
     size = terrain.pieces.diameter
-    slack = _SLACK * size
-    enough = _first_try(work, finger, level, gap, nodes[:_FIRST_FEW], points[:_FIRST_FEW])
+    enough = _first_try(work, finger, level, gap, nodes, points)
     inner = outer = shapely.MultiPolygon()
     found = 1.0
     for attempt in range(_REFINEMENTS + 1):
-        ins, in_counts, outs, out_counts = all_sandwiches(
-            terrain.pieces, terrain.z, finger, nodes, points, level, enough, slack
-        )
-        around = _polygons(outs, out_counts)
+        within, around = _sandwiches(work, finger, level, enough, nodes, points)
         grid = _grid(around, gap, size)
-        inner = _union(terrain, _polygons(ins, in_counts), grid)
+        inner = _union(terrain, within, grid)
         outer = _union(terrain, around, grid)
         found = 1.0 - inner.area / outer.area if outer.area > 0.0 else 0.0
         if found <= gap:
             break
-        target = gap * outer.area / max(8, len(out_counts)) ** 0.5
+        target = gap * outer.area / max(8, len(around)) ** 0.5
         enough = min(0.1 * enough, 0.5 * target * 10.0 ** -max(0, attempt - 1))
     return inner, outer, max(0.0, found)
 
@@ -129,14 +151,23 @@ def _first_try(
     work: CageWork, finger: int, level: float, gap: float, nodes: IntArray, points: FloatArray
 ) -> float:
     """[unit^2] How much area inner and outer polygon of a cell may differ by at first."""
-    terrain = work.search.terrain
-    size = terrain.pieces.diameter
-    rough = _ROUGH * size**2
-    _, _, outs, out_counts = all_sandwiches(
-        terrain.pieces, terrain.z, finger, nodes, points, level, rough, _SLACK * size
-    )
-    largest = float(shapely.area(_polygons(outs, out_counts)).max(initial=0.0))
+    rough = _ROUGH * work.search.terrain.pieces.diameter**2
+    few = nodes[:_FIRST_FEW], points[:_FIRST_FEW]
+    _, around = _sandwiches(work, finger, level, rough, *few)
+    largest = float(shapely.area(around).max(initial=0.0))
     return min(rough, _SHARE * gap * largest) if largest > 0.0 else rough
+
+
+def _sandwiches(
+    work: CageWork, finger: int, level: float, enough: float, nodes: IntArray, points: FloatArray
+) -> tuple[Polygons, Polygons]:
+    """Convex polygons within and around where a finger may be, cell by cell."""
+    terrain = work.search.terrain
+    slack = _SLACK * terrain.pieces.diameter
+    within, in_counts, around, out_counts = all_sandwiches(
+        terrain.pieces, terrain.z, finger, nodes, points, level, enough, slack
+    )
+    return _polygons(within, in_counts), _polygons(around, out_counts)
 
 
 def _cells_and_points(work: CageWork, finger: int, level: float) -> tuple[IntArray, FloatArray]:

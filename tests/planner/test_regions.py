@@ -8,7 +8,7 @@ import shapely
 from shapely import Polygon
 
 from icage.membership import query
-from icage.regions import FingerRegion, caging_regions
+from icage.regions import FingerRegion, caging_regions, outer_bounds
 from tests.oracles.geometry import Floats
 from tests.planner.wandering import Solved, solved, wander
 
@@ -53,6 +53,19 @@ def test_the_area_gap_is_honest(name: str) -> None:
         if not case.cage.finger_radius:
             inside = inner.geometry.intersection(case.ring.polygon).area
             assert inside <= 1e-6 * inner.geometry.area
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("gap", [0.02, 1e-3])
+def test_outer_bounds_alone_hold_the_regions(name: str, gap: float) -> None:
+    case = solved(name)
+    bounds = outer_bounds(case.cage, None, gap)
+    regions = regions_of(case)
+    assert len(bounds) == 3
+    for finger, bound in enumerate(bounds, start=1):
+        inner = regions[finger, "inner"].geometry
+        assert inner.difference(bound.buffer(4e-9 * case.ring.diameter)).area <= 1e-7 * inner.area
+        assert bound.area <= 1.1 * regions[finger, "outer"].geometry.area
 
 
 @pytest.mark.parametrize("name", SLICED)
