@@ -83,7 +83,8 @@ def report(name: str, outcomes: list[Outcome], chosen: argparse.Namespace, began
         "format": "icage-sweep/1",
         "sweep": name,
         "command": f"python -m benchmarks.sweeps.{name} --count {chosen.count} "
-        f"--first {chosen.first} --seed {chosen.seed}",
+        f"--first {chosen.first} --seed {chosen.seed}"
+        + (" --every-resolution" if getattr(chosen, "every_resolution", False) else ""),
         "targets": len(outcomes),
         "runs": sum(o.runs for o in outcomes),
         "tolerance": TOLERANCE,
