@@ -57,13 +57,18 @@ def balance(outline: Outline, contacts: FloatArray, reach: float) -> float | Non
     return float(-answer.fun) if answer.status == 0 else None
 
 
-def contacts_reason(outline: Outline, contacts: FloatArray) -> str:
-    """Why contacts are no strict local minimum of sigma, from the balance of forces."""
+def contacts_reason(outline: Outline, contacts: FloatArray, slide: float = 0.0) -> str:
+    """Why contacts are no strict local minimum of sigma, from the balance of forces.
+
+    ``slide`` [unit] is how far balanced contacts can slide at constant sigma.
+    """
     work = balance(outline, contacts, CONTACT_OFF * outline.diameter)
     if work is None:
         return "no equilibrium: no pushing forces at these contacts balance"
     if work < -_BALANCE:
         return "stretching: the forces balance, but the hand would have to open, not to close"
+    if slide:
+        return slide_reason(slide, outline.diameter)
     return "no strict local minimum: the hand can close further from these contacts"
 
 

@@ -153,3 +153,46 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
         births_out[n, 2] = at[a, b, c, 1]
         where_out[n] = where[a, b, c]
     return cells[:count], births_out, where_out
+
+
+@compiled
+def all_passes(pieces, z, cap, worst):
+    """Births (m^3,) of all cells and all passes: edges (e, 4), as ``merge`` wants them, and values.
+
+    Cell (a, b, c) has the number (a m + b) m + c. Complexity: m^3 cells, some 10 passes each.
+    """
+    m = len(pieces.ptr) - 1
+    base = np.empty((MAX_BASE, 5))
+    rows = np.empty((MAX_ROWS, 4))
+    tally = np.zeros(2, np.int64)
+    low = np.empty(m * m * m)
+    edges = np.empty((3 * m * m * len(pieces.slot_vertex) // 2 + 1, 4), np.int64)
+    values = np.empty(len(edges))
+    cell = np.empty(3, np.int64)
+    step = np.array([m * m, m, 1])
+    e = 0
+    for number in range(m * m * m):
+        cell[0], cell[1], cell[2] = number // (m * m), number // m % m, number % m
+        low[number], _, _, _, _ = birth(
+            pieces, z, cell[0], cell[1], cell[2], cap, worst, base, rows, tally
+        )
+        if low[number] == np.inf:
+            continue
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
+                if pieces.slot_neighbour[s] <= cell[i]:
+                    continue
+                t = s + 1 if s + 1 < pieces.ptr[cell[i] + 1] else pieces.ptr[cell[i]]
+                value, _, _ = pass_value(
+                    pieces, z, i, pieces.slot_vertex[s], pieces.slot_vertex[t],
+                    j, cell[j], k, cell[k], cap, worst, base, rows, tally,
+                )  # fmt: skip
+                if value == np.inf:
+                    continue
+                edges[e, 0] = number
+                edges[e, 1] = number + (pieces.slot_neighbour[s] - cell[i]) * step[i]
+                edges[e, 2], edges[e, 3] = i, s
+                values[e] = value
+                e += 1
+    return low, edges[:e], values[:e]

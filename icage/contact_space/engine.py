@@ -1,0 +1,163 @@
+"""The contact space as an engine: the paper's I-CAGE behind ``plan``. [Bunis2018, Sec. VI]"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from icage.cage import Cage, not_a_cage
+from icage.contact_space.basins import escape_edge, first_level, grasps_and_punctures, meetings
+from icage.contact_space.exploration import Exploration, Plane, explore_from
+from icage.contact_space.kernels.explore import TUNNEL
+from icage.contact_space.target import ContactTarget, find_contact_target
+from icage.hand import HandShape
+from icage.outline import Outline
+from icage.statics import ISOLATED, contacts_reason, no_depth_reason
+from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
+
+__all__ = ["CONTACT_SPACE", "ContactLook", "ContactSpace"]
+
+
+@dataclass(frozen=True, slots=True)
+class ContactLook:
+    """A target on one polygon and the search from it. See ``icage.engine.Look``."""
+
+    target: ContactTarget
+    found: Exploration
+
+    @property
+    def sigma_max(self) -> float:
+        """Escape level, inf if there is none."""
+        return self.found.level
+
+    @property
+    def sigma_first(self) -> float:
+        """First level."""
+        return first_level(self.found)
+
+    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+        """The cage on this polygon."""
+        found, sigma_0 = self.found, self.target.sigma_0
+        hand = found.plane.hand
+        largest = _largest_sigma(found) if found.closed_in else None
+        top = found.level if largest is None else largest
+        if top / sigma_0 - 1.0 < NOT_A_CAGE:
+            why = ISOLATED if largest is not None else no_depth_reason(top / sigma_0)
+            return not_a_cage(outline, hand, contacts, why, radius)
+        grasps, punctures = grasps_and_punctures(found, self.target)
+        path, gap = self.escape_path() or (None, None)
+        return Cage(
+            outline=outline,
+            hand=hand,
+            finger_radius=radius,
+            contacts=grasps[0].contacts,
+            verdict="cage" if found.escaped else "never_escapes",
+            why=None,
+            sigma_0=sigma_0,
+            sigma_first=punctures[0].sigma if punctures else None,
+            sigma_max=found.level if found.escaped else None,
+            sigma_largest=largest,
+            adjusted_by=self.target.moved * found.plane.outline.diameter,
+            punctures=punctures,
+            grasps=grasps,
+            escape_path=path,
+            min_finger_gap=gap,
+            warnings=_cut_warnings(found),
+            search=found.log(),
+        )
+
+    def escape_path(self) -> tuple[FloatArray, float] | None:
+        """Placements to a pinched hand and the least finger gap, or None.
+
+        Between neighbours two fingers stay on their edges and the third in its piece (all three
+        conditions are linear), or, in a tunnel, one finger stays and the hand shrinks.
+        """
+        if not self.found.escaped:
+            return None
+        found, plane = self.found, self.found.plane
+        hands = [self.target.hand]
+        for e in found.way_out():
+            hands.append(found.hands[e, 1:5])
+            if found.edges[e, 3] == TUNNEL:
+                hands.append(found.hands[e, 5:])
+        rows = [plane.placement(h) for h in hands]
+        x, y = self._pinched_at(hands[-1])
+        rows.append(np.array([x, y, rows[-1][2], 0.0]))
+        return np.array(rows), plane.hand.least_gap([complex(h[2], h[3]) for h in hands])
+
+    def _pinched_at(self, last: FloatArray) -> FloatArray:
+        """Where the three fingers meet at the end of the way out."""
+        found, plane = self.found, self.found.plane
+        if len(found.edges) and found.edges[-1, 1] < 0:
+            origin, keep = int(found.edges[-1, 0]), int(found.edges[-1, 2])
+            return plane.contacts(last)[(int(found.regions[origin, 0]) + keep) % 3]
+        _, ends = plane.least(found.regions[-1])
+        return plane.contacts(ends[0])[int(found.regions[-1, 0])]
+
+    def escape_kind(self) -> str:
+        """What the escape puncture crosses: "side", "diagonal", "wall", "tunnel" or "pinch"."""
+        return self.found.kind(escape_edge(self.found))
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSpace:
+    """The paper's method. ``tunnels=False`` leaves out Sec. V-B: unsafe, for teaching only."""
+
+    tunnels: bool = True
+    merge: bool = True
+
+    def cage(
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, outline: Outline,
+        radius: float,
+    ) -> Cage:  # fmt: skip
+        """The cage of point fingers on a polygon, or why there is none."""
+        plane = Plane.around(polygon, hand, merge=self.merge)
+        target = find_contact_target(plane, contacts, reach=TARGET_SHIFT, turn=TARGET_TURN)
+        if target is None or target.slide:
+            why = contacts_reason(polygon, contacts, target.slide if target else 0.0)
+            return not_a_cage(outline, hand, contacts, why, radius)
+        return self._explored(plane, target).cage(contacts, outline, radius)
+
+    def look(
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> ContactLook | None:
+        """The strict minimum nearest to the contacts and what surrounds it, or None."""
+        plane = Plane.around(polygon, hand, merge=self.merge)
+        target = find_contact_target(plane, contacts, reach=reach, turn=turn)
+        if target is None or target.slide:
+            return None
+        return self._explored(plane, target)
+
+    def _explored(self, plane: Plane, target: ContactTarget) -> ContactLook:
+        return ContactLook(target, explore_from(plane, target.region, tunnels=self.tunnels))
+
+
+CONTACT_SPACE = ContactSpace()
+
+
+def _largest_sigma(found: Exploration) -> float:
+    """Largest sigma of everything explored: sigma is convex, so at a corner of a region."""
+    plane = found.plane
+    largest = 0.0
+    for region in found.regions:
+        for s, u in plane.corners(region):
+            largest = max(largest, float(np.hypot(*plane.hand_at(region, s, u)[2:])))
+    return largest
+
+
+def _cut_warnings(found: Exploration) -> tuple[str, ...]:
+    """Whether sigma_first hangs on the depth below which a minimum does not count."""
+    size = found.plane.outline.diameter
+    firsts = []
+    for cut in (1e-11, DEPTH_CUT, 1e-6):
+        met = meetings(found, cut * size)
+        firsts.append(met[0].sigma if met else found.level)
+    if len(set(firsts)) == 1:
+        return ()
+    return (
+        "sigma_first depends on how deep a minimum must be to count: "
+        f"{firsts[0]:.9g} (1e-11 of the diameter), {firsts[1]:.9g} (1e-10, used), "
+        f"{firsts[2]:.9g} (1e-6)",
+    )

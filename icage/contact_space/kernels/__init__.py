@@ -1,0 +1,1 @@
+"""Compiled loops of the contact space. Nothing here is shared with the cells' kernels."""

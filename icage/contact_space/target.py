@@ -1,0 +1,94 @@
+"""The target in contact space: the strict minimum of sigma next to the contacts asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from icage.contact_space.exploration import Plane, explore_from
+from icage.tolerance import DEPTH_CUT, PLATEAU
+
+_MOST = 4000
+"""Regions round a target that are looked at: many pieces may meet in a vertex of a fine fan."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactTarget:
+    """A local minimum: the region to start from, the hand (4,) = d, w, and how far it was.
+
+    ``slide`` is the length of the valley it lies in, [unit]; 0 for a strict minimum.
+    """
+
+    region: IntArray
+    hand: FloatArray
+    sigma_0: float
+    moved: float
+    slide: float
+
+
+def regions_near(plane: Plane, contacts: FloatArray, reach: float) -> IntArray:
+    """Regions (k, 4) whose edges and piece come within ``reach`` [unit] of the contacts (3, 2)."""
+    space = plane.space
+    edges: list[IntArray] = []
+    pieces: list[IntArray] = []
+    for x, y in contacts - plane.origin:
+        off_x, off_y = x - space.edge_x, y - space.edge_y
+        t = np.clip(off_x * space.edge_tx + off_y * space.edge_ty, 0.0, space.edge_length)
+        gap = np.hypot(off_x - t * space.edge_tx, off_y - t * space.edge_ty)
+        edges.append(np.flatnonzero(gap <= reach))
+        inside = space.slot_nx * (x - space.slot_x) + space.slot_ny * (y - space.slot_y)
+        pieces.append(np.flatnonzero(np.minimum.reduceat(inside, space.ptr[:-1]) >= -reach))
+    rows = [
+        (i, *row)
+        for i in range(3)
+        for row in product(edges[i], edges[(i + 1) % 3], pieces[(i + 2) % 3])
+    ]
+    return np.array(rows[:_MOST], dtype=np.int64).reshape(-1, 4)
+
+
+def find_contact_target(
+    plane: Plane, contacts: FloatArray, *, reach: float, turn: float
+) -> ContactTarget | None:
+    """The local minimum nearest to the contacts (3, 2), or None.
+
+    ``reach`` [diameter] bounds how far a finger may be from it, ``turn`` [rad] the hand's angle.
+    """
+    size = plane.outline.diameter
+    wanted = contacts[:, 0] + 1j * contacts[:, 1] - complex(*plane.origin)
+    near: list[ContactTarget] = []
+    for region in regions_near(plane, contacts, 2.0 * reach * size):
+        if not len(plane.corners(region)):
+            continue
+        low, ends = plane.least(region)
+        hand, slide = _nearest(plane, ends, wanted)
+        moved = float(np.abs(plane.fingers(hand) - wanted).max()) / size
+        turned = abs(np.angle(complex(hand[2], hand[3]) * np.conj(wanted[1] - wanted[0])))
+        if moved <= reach and turned <= turn and low > plane.space.pinch:
+            near.append(ContactTarget(region, hand, low, moved, slide))
+    near.sort(key=lambda t: (round(t.moved, 12), t.sigma_0, t.region.tolist()))
+    for target in near:
+        if target.slide or _is_minimum(plane, target):
+            return target
+    return None
+
+
+def _nearest(plane: Plane, ends: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]:
+    """The hand of a valley whose finger 1 is nearest to the wanted one, and the valley's length."""
+    side = ends[1] - ends[0]
+    square = float(side @ side)
+    slide = float(np.hypot(side[0], side[1]))
+    if square == 0.0 or slide <= PLATEAU * plane.outline.diameter:
+        return 0.5 * (ends[0] + ends[1]), 0.0
+    off = np.array([wanted[0].real, wanted[0].imag]) - ends[0, :2]
+    t = float(np.clip(off @ side[:2] / (side[:2] @ side[:2]), 0.0, 1.0))
+    return ends[0] + t * side, slide
+
+
+def _is_minimum(plane: Plane, target: ContactTarget) -> bool:
+    """Whether nothing deeper can be reached without opening by more than the depth cut."""
+    cut = DEPTH_CUT * plane.outline.diameter
+    found = explore_from(plane, target.region, stop_above=target.sigma_0 + 0.5 * cut)
+    return not found.escaped and float(found.nodes[:, 0].min()) >= target.sigma_0 - cut
