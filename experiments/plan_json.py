@@ -7,7 +7,7 @@ from typing import Any
 
 import shapely
 
-from icage.cage import Cage
+from icage.cage import Cage, SearchLog
 from icage.regions import FingerRegion
 
 
@@ -55,6 +55,21 @@ def plan_document(
         ],
         "regions": [_region(region) for region in regions],
         "warnings": cage.warnings,
+        **({"search": _search(cage.search)} if cage.search is not None else {}),
+    }
+
+
+def _search(log: SearchLog) -> dict[str, Any]:
+    return {
+        "iterations": [
+            {"sigma": step.sigma, "pair": step.pair, "edges": step.edges, "kind": step.kind}
+            for step in log.iterations
+        ],
+        "rectangles_explored": log.rectangles_explored,
+        "rectangles_total": log.rectangles_total,
+        "nodes": log.nodes,
+        "tunnel_edges_tried": log.tunnel_edges_tried,
+        "tunnel_edges_used": log.tunnel_edges_used,
     }
 
 
@@ -101,6 +116,13 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
             joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""
             yield f"puncture     {puncture.sigma:.9g} {unit}, {puncture.kind}{joins}"
         yield f"grasps       {len(cage.grasps)}, the target among them"
+    if cage.search is not None:
+        log = cage.search
+        yield (
+            f"search       {len(log.iterations)} nodes met, {log.rectangles_explored} of "
+            f"{log.rectangles_total} rectangles, {log.tunnel_edges_used} tunnel edges used "
+            f"({log.tunnel_edges_tried} tried)"
+        )
     for warning in cage.warnings:
         yield f"warning      {warning}"
 

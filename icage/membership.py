@@ -14,7 +14,7 @@ import numpy as np
 
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage, CageWork
-from icage.errors import PlacementError
+from icage.errors import InputError, PlacementError
 from icage.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
 from icage.kernels.tree import find_at
@@ -125,12 +125,16 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     ------
     PlacementError:
         Not (n, 4), not finite, or a negative sigma; names the row (from 0).
+    InputError:
+        The cage comes from a method that keeps no cells.
 
     Notes
     -----
     About 4 us a placement at 100 vertices once the cells outside the cage have been met.
     """
     rows = checked_placements(placements)
+    if cage.work is None and cage.verdict != "not_a_cage":
+        raise InputError("queries need a cage planned by the cells' method")
     sigma = rows[:, 3].copy()
     fingers = cage.hand.fingers(rows)
     size = cage.outline.diameter

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Any
 
 from experiments.options import add_json, check_output
+
+METHODS = ("cells", "contact-space", "both")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -19,6 +22,18 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
     add_json(parser)
     parser.add_argument("--figure", metavar="FILE", help="draw the cage into FILE (.svg or .png)")
+    parser.add_argument(
+        "--method",
+        choices=METHODS,
+        default="cells",
+        help="cells (default, exact and fast); contact-space: the paper's I-CAGE; both: run both "
+        "and exit with 1 if a level differs by more than 1e-7",
+    )
+    parser.add_argument(
+        "--no-tunnels",
+        action="store_true",
+        help="contact-space without the tunnel edges of Sec. V-B: unsafe, to show what they do",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -38,23 +53,27 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--figure {args.figure!r}: a name ending in .svg or .png is needed")
     if args.figure is not None and args.json is not None and args.json == args.figure:
         raise InputError(f"--json and --figure both name {args.json!r}")
+    if args.no_tunnels and args.method != "contact-space":
+        raise InputError("--no-tunnels goes with --method contact-space only")
     case = read_case(path)
+    from experiments.methods import planned
 
-    from icage.planner import plan  # only now: it takes a second to load
-    from icage.regions import caging_regions
-
-    cage = plan(case.outline, case.contacts, case.finger_radius)
+    answer = planned(case, args.method, tunnels=not args.no_tunnels)
+    for line in answer.disagreements:
+        print(f"icage: the methods disagree: {line}", file=sys.stderr)
     document: dict[str, Any] = {}
     if args.json is not None:
-        regions = caging_regions(cage) if cage.verdict != "not_a_cage" else ()
-        document = plan_document(cage, regions, case.name, case.unit)
+        document = plan_document(answer.cage, answer.regions(), case.name, case.unit)
         json_text(document)  # a number that cannot be written fails before any file appears
     if args.figure is not None:
         from experiments.figures import draw_plan, figure_regions
 
-        draw_plan(cage, figure_regions(cage), case.name, case.unit, Path(args.figure))
+        regions = figure_regions(answer.cells)
+        draw_plan(answer.cells, regions, case.name, case.unit, Path(args.figure))
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
-        print("\n".join(plan_summary(cage, case.name, case.unit)))
-    return 0
+        print("\n".join(plan_summary(answer.cage, case.name, case.unit)))
+        if args.method == "both" and not answer.disagreements:
+            print("methods      cells and contact space agree to 1e-7")
+    return 1 if answer.disagreements else 0

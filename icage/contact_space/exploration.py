@@ -193,7 +193,13 @@ def explore_from(
         More than ``limit`` regions.
     """
     start = np.asarray(region[:4], dtype=np.int64)
-    outcome, level, *arrays, tally = explore(plane.space, start, tunnels, stop_above, limit)
+    outcome, level, regions, nodes, edges, hands, entries, places, left, tally = explore(
+        plane.space, start, tunnels, stop_above, limit
+    )
     if outcome == GAVE_UP:
         raise GeometryError(f"the search gave up after {limit} convex regions")
-    return Exploration(plane, int(outcome), float(level), *arrays, int(tally[0]), int(tally[1]))
+    return Exploration(
+        plane=plane, outcome=int(outcome), level=float(level), regions=regions, nodes=nodes,
+        edges=edges, hands=hands, entries=entries, places=places, left=left,
+        tunnels_tried=int(tally[0]), tunnels_used=int(tally[1]),
+    )  # fmt: skip

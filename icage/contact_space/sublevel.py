@@ -50,9 +50,10 @@ def sublevels(plane: Plane, *, tunnels: bool = True) -> Sublevels:
     """
     space = plane.space
     regions, nodes, known = all_regions(space)
-    edges, values = all_edges(space, regions, nodes, known, tunnels)
-    births, edges, values = _with_pinch(nodes[:, 0], edges, values, space.pinch)
-    merges, levels, _ = persistence(births, edges, values, np.inf)
+    graph, values = all_edges(space, regions, nodes, known, tunnels)
+    edges = np.asarray(graph, dtype=np.int64)
+    births, rows, values = _with_pinch(nodes[:, 0].copy(), edges, values, space.pinch)
+    merges, levels, _ = persistence(births, rows, values, np.inf)
     ended = np.full(len(births), np.inf)
     ended[merges[:, 1]] = levels
     depth = ended[:-1] - births[:-1]
@@ -72,7 +73,8 @@ def _with_pinch(
     node = len(births)
     low = np.where(births <= pinch, 0.0, births)
     pinched = np.flatnonzero(low == 0.0)
-    out = np.column_stack([pinched, np.full(len(pinched), node), np.zeros(len(pinched), int)])
-    edges = np.where(edges[:, :2] == -1, node, edges[:, :2]), edges[:, 2]
-    rows = np.vstack([np.column_stack(edges), out]).astype(np.int64)
-    return np.append(low, -1.0), rows, np.concatenate([values, np.zeros(len(pinched))])
+    out = np.column_stack([pinched, np.full(len(pinched), node), np.zeros(len(pinched), np.int64)])
+    rows = edges.copy()
+    rows[rows[:, 1] < 0, 1] = node
+    levels = np.concatenate([values, np.zeros(len(pinched))])
+    return np.append(low, -1.0), np.vstack([rows, out]), levels

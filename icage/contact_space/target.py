@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.contact_space.exploration import Plane, explore_from
 from icage.tolerance import DEPTH_CUT, PLATEAU
 
@@ -75,7 +75,7 @@ def find_contact_target(
     return None
 
 
-def _nearest(plane: Plane, ends: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]:
+def _nearest(plane: Plane, ends: FloatArray, wanted: ComplexArray) -> tuple[FloatArray, float]:
     """The hand of a valley whose finger 1 is nearest to the wanted one, and the valley's length."""
     side = ends[1] - ends[0]
     square = float(side @ side)

@@ -1,0 +1,32 @@
+"""Do two methods say the same about a target? Our own."""
+
+from __future__ import annotations
+
+from icage.cage import Cage
+
+AGREEMENT = 1e-7
+"""[1] Levels of two methods may differ by this much (relative)."""
+
+
+def difference(a: float | None, b: float | None) -> float:
+    """Relative difference of two levels; inf if only one of them exists."""
+    if a is None or b is None:
+        return 0.0 if a is b else float("inf")
+    return abs(a - b) / max(abs(a), abs(b))
+
+
+def disagreements(a: Cage, b: Cage, tolerance: float = AGREEMENT) -> list[str]:
+    """What two cages of the same target differ in, one line each; empty if they agree."""
+    found: list[str] = []
+    if a.verdict != b.verdict:
+        found.append(f"verdict: {a.verdict} against {b.verdict}")
+    for name in ("sigma_0", "sigma_first", "sigma_max", "sigma_max_upper"):
+        one, other = getattr(a, name), getattr(b, name)
+        off = difference(one, other)
+        if off > tolerance:
+            found.append(f"{name}: {_shown(one)} against {_shown(other)} ({off:.2g} relative)")
+    return found
+
+
+def _shown(level: float | None) -> str:
+    return "none" if level is None else f"{level:.12g}"
