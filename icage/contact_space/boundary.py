@@ -57,8 +57,7 @@ class Boundary:
 
     def edge_at(self, s: FloatArray) -> IntArray:
         """Edge that holds arclength s (any shape, taken modulo L); at a vertex the one ahead."""
-        wrapped = np.mod(s, self.perimeter)
-        return np.clip(np.searchsorted(self.s_0, wrapped, "right") - 1, 0, len(self) - 1)
+        return np.searchsorted(self.s_0[:-1], self._wrapped(s), "right") - 1
 
     def on_edge(self, edge: int | IntArray, s: FloatArray) -> FloatArray:
         """P(s) = p^0 + (s - s^0) t on a given edge, (..., 2). [Bunis2018, Eq. (2)]"""
@@ -67,8 +66,13 @@ class Boundary:
 
     def at(self, s: FloatArray) -> FloatArray:
         """P(s) for arclengths of any shape, (..., 2). [Bunis2018, Eq. (2)]"""
-        wrapped = np.mod(np.asarray(s, dtype=np.float64), self.perimeter)
+        wrapped = self._wrapped(s)
         return self.on_edge(self.edge_at(wrapped), wrapped)
+
+    def _wrapped(self, s: FloatArray) -> FloatArray:
+        """S modulo L, in [0, L)."""
+        wrapped = np.mod(np.asarray(s, dtype=np.float64), self.perimeter)
+        return np.where(wrapped < self.perimeter, wrapped, 0.0)
 
     def nearest(self, point: FloatArray) -> tuple[int, float, float]:
         """Edge, arclength and distance [unit] of the boundary point nearest to a point (2,)."""

@@ -64,7 +64,7 @@ def _vertex_edge(boundary: Boundary) -> list[PairGrasp]:
         along = (boundary.start - boundary.start[edge]) @ boundary.tangent[edge]
         height = (boundary.start - boundary.start[edge]) @ inward[edge]
         inside = (along > 0.0) & (along < boundary.length[edge]) & (height > 0.0)
-        for vertex in np.flatnonzero(inside):
+        for vertex in np.flatnonzero(inside).tolist():
             if vertex not in (edge, (edge + 1) % n) and _pushes(boundary, vertex, -inward[edge]):
                 foot = boundary.start[edge] + along[vertex] * boundary.tangent[edge]
                 pair = np.array([foot, boundary.start[vertex]])

@@ -22,7 +22,7 @@ def sines(hand: HandShape) -> FloatArray:
 
 
 def rho(hand: HandShape, pair: int) -> float:
-    """Sigma per distance of the fingers of a pair: sin phi_3 / sin phi_{i+2}. [Bunis2018, Def. 4]"""
+    """Sigma per distance of a pair: sin phi_3 / sin phi_{i+2}. [Bunis2018, Def. 4]"""
     sin = sines(hand)
     return float(sin[2] / sin[(pair + 2) % 3])
 

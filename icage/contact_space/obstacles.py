@@ -15,8 +15,12 @@ from icage.contact_space.third_finger import Parallelogram
 from icage.convex import merge_convex, triangulate
 from icage.hand import HandShape
 
-NOTED = 1e-12
-"""[perimeter] Noding grid of unions: far below every figure, far above rounding."""
+NODED = 1e-11
+"""[perimeter] Grid on which pulled back pieces are joined: above the tolerance of clipping, so that
+no crack is left between two pieces, and a hundred times below what a figure or test can see."""
+
+_CRACK = 10.0
+"""[grid] A ring thinner than this is a crack."""
 
 
 def interior_pieces(boundary: Boundary) -> list[FloatArray]:
@@ -27,13 +31,14 @@ def interior_pieces(boundary: Boundary) -> list[FloatArray]:
 
 
 def rectangle_obstacle(
-    parallelogram: Parallelogram, pieces: list[FloatArray], noted: float = 0.0
+    parallelogram: Parallelogram, pieces: list[FloatArray]
 ) -> shapely.MultiPolygon:
     """The obstacle within one rectangle: polygonal, as T^-1 maps lines to lines.
 
-    ``noted`` is the noding grid of the union, [unit]. [Bunis2018, Lemma 4.1]
+    [Bunis2018, Lemma 4.1]
     """
-    return _union([parallelogram.clipped(piece) for piece in pieces], noted)
+    grid = NODED * float(parallelogram.size.max())
+    return _union([parallelogram.clipped(piece) for piece in pieces], grid)
 
 
 def obstacles(boundary: Boundary, hand: HandShape, pair: int) -> shapely.MultiPolygon:
@@ -49,7 +54,7 @@ def obstacles(boundary: Boundary, hand: HandShape, pair: int) -> shapely.MultiPo
         for k, parallelogram in enumerate(row):
             hit = [pieces[c] for c in np.flatnonzero(near[:, k])]
             found += [parallelogram.clipped(piece) for piece in hit]
-    return _union(found, NOTED * boundary.perimeter)
+    return _union(found, NODED * boundary.perimeter)
 
 
 def _may_meet(row: list[Parallelogram], piece: FloatArray) -> BoolArray:
@@ -64,10 +69,20 @@ def _may_meet(row: list[Parallelogram], piece: FloatArray) -> BoolArray:
     return ~(beyond | apart)
 
 
-def _union(parts: list[FloatArray], noted: float) -> shapely.MultiPolygon:
+def _union(parts: list[FloatArray], grid: float) -> shapely.MultiPolygon:
     """Union of convex polygons; points and segments have no inside and are left out."""
     polygons = [shapely.Polygon(part) for part in parts if len(part) >= 3]
     solid = [polygon for polygon in polygons if polygon.area > 0.0]
-    united = shapely.union_all(solid, grid_size=noted or None)
+    united = shapely.union_all(solid, grid_size=grid)
     kept = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
-    return shapely.MultiPolygon(kept)
+    return shapely.MultiPolygon(
+        [
+            shapely.Polygon(p.exterior, [h for h in p.interiors if not _thin(h, grid)])
+            for p in kept
+            if not _thin(p.exterior, grid)
+        ]
+    )
+
+
+def _thin(ring: shapely.LinearRing, grid: float) -> bool:
+    return shapely.Polygon(ring).area <= _CRACK * grid * ring.length
