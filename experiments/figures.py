@@ -23,7 +23,7 @@ from icage.regions import FingerRegion, caging_regions
 
 FORMATS = (".svg", ".png")
 
-_SETTINGS = {
+FIGURE_SETTINGS = {
     "svg.hashsalt": "icage",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
@@ -59,7 +59,7 @@ def draw_plan(
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
-    with matplotlib.rc_context(_SETTINGS):
+    with matplotlib.rc_context(FIGURE_SETTINGS):
         sheet = plan_sheet(cage, regions, name, unit)
         with whole_file(path) as part:
             if suffix == ".svg":

@@ -216,6 +216,13 @@ class _Area:
         return a + u * (b - a) + v * (c - a)
 
 
+def region_points(
+    region: shapely.MultiPolygon, rng: np.random.Generator, count: int
+) -> NDArray[np.complex128]:
+    """Points (count,), uniform over a region."""
+    return _Area.of(region).points(rng, count)
+
+
 def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:
     """Which placements (n, 4) are in the set and clear of the true outline, (n,)."""
     inside = np.zeros(len(placements), dtype=np.bool_)

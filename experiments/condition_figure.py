@@ -1,0 +1,50 @@
+"""A counterexample to the paper's condition: fingers in their regions, and no cage."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import shapely
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from experiments.drawing.palette import INK, QUIET_INK
+from experiments.drawing.plan_view import draw_plan_view
+from experiments.drawing.sheet import lay_out
+from experiments.figures import FIGURE_SETTINGS
+from experiments.whole_files import whole_file
+from icage.arrays import FloatArray
+from icage.cage import Cage, Puncture
+from icage.regions import caging_regions
+
+_STRIP = 44.0
+"""[pt]"""
+
+
+def draw_counterexample(cage: Cage, placement: FloatArray, verdict: str, path: Path) -> None:
+    """Draw target, regions at sigma_max and a placement (4,) that meets the condition, as SVG."""
+    regions = [r for r in caging_regions(cage) if r.bound == "inner"]
+    hand = cage.hand.fingers(placement)
+    bounds = shapely.total_bounds(
+        np.array([cage.outline.polygon, *(r.geometry for r in regions)], dtype=object)
+    )
+    box = (float(bounds[0]), float(bounds[1]), float(bounds[2]), float(bounds[3]))
+    with matplotlib.rc_context(FIGURE_SETTINGS):
+        sheet = lay_out(box, box, _STRIP)
+        FigureCanvasAgg(sheet.figure)
+        shown = Puncture(float(placement[3]), "intermediate", (), hand, ())
+        draw_plan_view(sheet.axes, sheet.main, cage, regions, shown)
+        ratio = placement[3] / cage.sigma_0
+        lines = (
+            (INK, "Solid: the target grasp. Dashed: every finger in its own caging region,"),
+            (INK, rf"$\sigma$ = {ratio:.3g} $\sigma_0$, and yet the query says: {verdict}."),
+            (
+                QUIET_INK,
+                "The regions are shadows of the cage: to stand in all three is not enough.",
+            ),
+        )
+        for row, (colour, text) in enumerate(lines):
+            sheet.axes.text(sheet.left, _STRIP - 4.0 - 13.0 * row, text, color=colour, fontsize=8.5)
+        with whole_file(path) as part:
+            sheet.figure.savefig(part, format=path.suffix[1:], dpi=160)
