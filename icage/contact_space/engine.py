@@ -103,9 +103,15 @@ class ContactLook:
 
 @dataclass(frozen=True, slots=True)
 class ContactSpace:
-    """The paper's method. ``tunnels=False`` leaves out Sec. V-B: unsafe, for teaching only."""
+    """The paper's method, with one correction: tunnel edges are taken in both directions.
+
+    ``both_ways=False`` takes them downwards only, to the letter; ``tunnels=False`` leaves out Sec.
+    V-B altogether. Both can miss connections, so that sigma_max comes out too high: for teaching.
+    ``merge=False`` keeps the triangles of the paper instead of larger convex pieces.
+    """
 
     tunnels: bool = True
+    both_ways: bool = True
     merge: bool = True
 
     def cage(
@@ -131,7 +137,8 @@ class ContactSpace:
         return self._explored(plane, target)
 
     def _explored(self, plane: Plane, target: ContactTarget) -> ContactLook:
-        return ContactLook(target, explore_from(plane, target.region, tunnels=self.tunnels))
+        found = explore_from(plane, target.region, tunnels=self.tunnels, both_ways=self.both_ways)
+        return ContactLook(target, found)
 
 
 CONTACT_SPACE = ContactSpace()

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, field
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import SearchLog, SearchStep
 from icage.contact_space.kernels.explore import (
-    CHECK,
     CLOSED_IN,
     ESCAPED,
     GAVE_UP,
@@ -25,6 +24,7 @@ from icage.contact_space.kernels.rectangle import (
     least_of_region,
     region_corners,
 )
+from icage.contact_space.kernels.tunnels import all_tunnels
 from icage.contact_space.surroundings import Surroundings, surroundings
 from icage.errors import GeometryError
 from icage.hand import HandShape
@@ -36,6 +36,14 @@ REGION_LIMIT: Final = 5_000_000
 _SIDES: Final = "side"
 
 
+class TunnelEdges(NamedTuple):
+    """Tunnel edges in the order of the key of the region where they land. See ``all_tunnels``."""
+
+    keys: IntArray
+    regions: IntArray
+    hands: FloatArray
+
+
 @dataclass(frozen=True, slots=True)
 class Plane:
     """One polygon, one hand, and the plane between them cut into convex pieces."""
@@ -44,12 +52,27 @@ class Plane:
     hand: HandShape
     space: Surroundings
     origin: FloatArray
+    remembered: dict[str, TunnelEdges] = field(
+        default_factory=dict[str, TunnelEdges], repr=False, compare=False
+    )
 
     @classmethod
     def around(cls, outline: Outline, hand: HandShape, *, merge: bool = True) -> Plane:
         """``merge=False`` keeps the triangles of the paper instead of larger convex pieces."""
         space, origin = surroundings(outline, hand, merge=merge)
         return cls(outline, hand, space, origin)
+
+    def tunnel_edges(self) -> TunnelEdges:
+        """All of them, found when first asked for. O(n^2) and O(n) for each candidate."""
+        if "tunnels" not in self.remembered:
+            found, hands = all_tunnels(self.space)
+            regions = np.asarray(found, dtype=np.int64)
+            n, m = self.space.edges, len(self.space.ptr) - 1
+            i, j, k, c = regions[:, 4:8].T
+            keys = ((i * n + j) * n + k) * m + c
+            order = np.argsort(keys, kind="stable")
+            self.remembered["tunnels"] = TunnelEdges(keys[order], regions[order], hands[order])
+        return self.remembered["tunnels"]
 
     def corners(self, region: IntArray) -> FloatArray:
         """Corners (m, 2) in (s, u) of region i, j, k, c; empty if there is no such region."""
@@ -161,7 +184,7 @@ class Exploration:
             iterations=tuple(steps),
             rectangles_explored=len(rectangles),
             rectangles_total=3 * self.plane.space.edges**2,
-            nodes=len(self.regions) + int((self.entries[:, 1] != CHECK).sum()),
+            nodes=len(self.regions) + int((self.entries[:, 1] >= 0).sum()),
             tunnel_edges_tried=self.tunnels_tried,
             tunnel_edges_used=self.tunnels_used,
         )
@@ -181,11 +204,20 @@ class Exploration:
         return SearchStep(sigma, (i + 1, (i + 1) % 3 + 1), (j, k), kind)
 
 
+_NO_TUNNELS: Final = TunnelEdges(
+    np.zeros(0, np.int64), np.zeros((0, 9), np.int64), np.zeros((0, 9))
+)
+
+
 def explore_from(
-    plane: Plane, region: IntArray, *, tunnels: bool = True, stop_above: float = np.inf,
-    limit: int = REGION_LIMIT,
+    plane: Plane, region: IntArray, *, tunnels: bool = True, both_ways: bool = True,
+    stop_above: float = np.inf, limit: int = REGION_LIMIT,
 ) -> Exploration:  # fmt: skip
-    """I-CAGE from a region that holds the target. ``tunnels=False`` drops Sec. V-B, for teaching.
+    """I-CAGE from a region that holds the target.
+
+    ``tunnels=False`` drops Sec. V-B, for teaching. ``both_ways=False`` takes tunnel edges only
+    downwards, when the search closes their upper end, as the paper does; then it may miss basins
+    whose only connection is a tunnel edge that comes down to it.
 
     Raises
     ------
@@ -193,8 +225,9 @@ def explore_from(
         More than ``limit`` regions.
     """
     start = np.asarray(region[:4], dtype=np.int64)
+    above = plane.tunnel_edges() if tunnels and both_ways else _NO_TUNNELS
     outcome, level, regions, nodes, edges, hands, entries, places, left, tally = explore(
-        plane.space, start, tunnels, stop_above, limit
+        plane.space, start, tunnels, *above, stop_above, limit
     )
     if outcome == GAVE_UP:
         raise GeometryError(f"the search gave up after {limit} convex regions")

@@ -90,5 +90,7 @@ def _nearest(plane: Plane, ends: FloatArray, wanted: ComplexArray) -> tuple[Floa
 def _is_minimum(plane: Plane, target: ContactTarget) -> bool:
     """Whether nothing deeper can be reached without opening by more than the depth cut."""
     cut = DEPTH_CUT * plane.outline.diameter
-    found = explore_from(plane, target.region, stop_above=target.sigma_0 + 0.5 * cut)
+    found = explore_from(
+        plane, target.region, both_ways=False, stop_above=target.sigma_0 + 0.5 * cut
+    )
     return not found.escaped and float(found.nodes[:, 0].min()) >= target.sigma_0 - cut

@@ -42,6 +42,9 @@ SEAM, TUNNEL, PINCH = 0, 1, 2
 CHECK = -1
 """Label of an open entry that asks whether a region's least node needs a tunnel edge."""
 
+UPWARDS = -2
+"""Labels from here downwards are tunnel edges that land in the region: number UPWARDS - label."""
+
 
 @compiled
 def region_key(space, i, j, k, c):
@@ -166,8 +169,26 @@ def find_tunnel(space, region, s, u, target, where):
 
 
 @compiled
-def explore(space, start, tunnels, stop_above, limit):
+def open_tunnels(key, r, above_keys, above_hands, ints, floats, p, heap):
+    """Put the tunnel edges that land in region r on the open list, to be taken upwards."""
+    t = np.searchsorted(above_keys, key)
+    while t < len(above_keys) and above_keys[t] == key:
+        if p == len(ints):
+            ints, floats = longer(ints), longer(floats)
+        ints[p, 0], ints[p, 1] = r, UPWARDS - t
+        floats[p, 0], floats[p, 1] = 0.0, 0.0
+        heapq.heappush(heap, (above_hands[t, 0], p))
+        p += 1
+        t += 1
+    return ints, floats, p
+
+
+@compiled
+def explore(space, start, tunnels, above_keys, above, above_hands, stop_above, limit):
     """Search from region ``start`` (4,) for a pinched hand.
+
+    ``above_keys`` (t,) ascending, ``above`` (t, 9) and ``above_hands`` (t, 9) are tunnel edges by
+    the key of the region in which they land, as of ``all_tunnels``: taken from below.
 
     Returns (outcome, level, regions (r, 5) = i, j, k, c, parent edge, nodes (r, 4) = birth, s, u,
     level reached at; edges (e, 4) = from, to, label or finger kept, kind; hands (e, 9) = level, a
@@ -230,6 +251,9 @@ def explore(space, start, tunnels, stop_above, limit):
                     space, targets[a], r, tunnels, nodes[r, 0], corners, count, entries, places,
                     p, heap,
                 )  # fmt: skip
+                entries, places, p = open_tunnels(
+                    key, r, above_keys, above_hands, entries, places, p, heap
+                )
             r += 1
             if outcome == ESCAPED:
                 break
@@ -245,7 +269,15 @@ def explore(space, start, tunnels, stop_above, limit):
         origin, via = entries[entry, 0], entries[entry, 1]
         i, j, k = regions[origin, 0], regions[origin, 1], regions[origin, 2]
         queue = 0
-        if via != CHECK:
+        if via <= UPWARDS:
+            level = max(level, value)
+            t = UPWARDS - via
+            kind, via, queue = TUNNEL, above[t, 8], 1
+            for b in range(4):
+                targets[0, b] = above[t, b]
+                hand[1 + b], hand[5 + b] = above_hands[t, 5 + b], above_hands[t, 1 + b]
+            hand[0] = value
+        elif via != CHECK:
             level = max(level, value)
             kind, hand[0] = SEAM, value
             queue = across(space, i, j, k, regions[origin, 3], via, targets)
