@@ -1,4 +1,4 @@
-"""The paper's own condition, against the joint query. [Bunis2018, Sec. III-B, VII]
+"""The paper's own condition, against the joint query. [Bunis2018, Sec. III-B, Sec. VII-B]
 
 "Each finger in its caging region and sigma < sigma_max" is necessary for a placement to be in the
 cage. Is it sufficient? The regions are shadows of a set of hands, and a hand may stand in all three

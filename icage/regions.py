@@ -1,8 +1,9 @@
-"""The caging regions of the fingers: where each may be below a level. [Bunis2018, Sec. III-B, VI]
+"""The caging regions of the fingers: where each may be below a level.
 
-Every configuration of the target's component below the level puts finger i into its region, and
-every point of the region is reached by one. (That fingers standing each in its own region, with
-sigma below the level, always cage is the paper's condition; the joint query is the authority.)
+[Bunis2018, Sec. III-B, Sec. VI]. Every configuration of the target's component below the level puts
+finger i into its region, and every point of the region is reached by one. (That fingers standing
+each in its own region, with sigma below the level, always cage is the paper's condition; the joint
+query is the authority.)
 """
 
 from __future__ import annotations

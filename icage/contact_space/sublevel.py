@@ -1,8 +1,8 @@
-"""The sublevel structure of a hand shape: all minima of sigma and where they merge. [Thm. 1]
+"""The sublevel structure of a hand shape: all minima of sigma and where they merge.
 
-Not one search but everything: the diagram of births and merges by the elder rule. Minima of
-contact space that are none of free space have no depth, since their tunnel edge leaves at their
-own level, and drop out by the depth cut.
+[Bunis2018, Thm. 1]. Not one search but everything: the diagram of births and merges by the elder
+rule. Minima of contact space that are none of free space have no depth, since their tunnel edge
+leaves at their own level, and drop out by the depth cut.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from icage.tolerance import DEPTH_CUT
 
 @dataclass(frozen=True, slots=True)
 class Sublevels:
-    """All minima of sigma for one hand shape, by sigma.
+    """All minima of sigma for one hand shape, by sigma. [Bunis2018, Def. 8]
 
     Attributes
     ----------

@@ -1,5 +1,6 @@
 """Boundary, plane and hand as flat arrays for the contact space kernels.
 
+Contact space is the set of hands with two fingers on the boundary. [Bunis2018, Def. 2]
 The exterior pieces are those of the cells' method; from here on nothing is shared with it.
 """
 
@@ -34,7 +35,8 @@ class Surroundings(NamedTuple):
     """Edges of the object, pieces of the plane, hand; coordinates relative to ``origin``.
 
     Edge q runs counterclockwise from vertex q, with the object on its left. ``turn`` of pair i is
-    the paper's R_{i,i+1} as a complex number: X = f_i + turn (f_{i+1} - f_i). [Bunis2018, IV-B]
+    the paper's R_{i,i+1} as a complex number: X = f_i + turn (f_{i+1} - f_i).
+    [Bunis2018, Sec. IV-B]
     """
 
     edge_x: FloatArray

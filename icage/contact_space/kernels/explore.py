@@ -1,4 +1,4 @@
-"""The incremental best-first search for the escape path. [Bunis2018, VI, I-CAGE]
+"""The incremental best-first search for the escape path. [Bunis2018, Sec. VI]
 
 The graph is the paper's with every clique of a region's nodes written as a star: the region's
 least node in the middle, one node per seam round it (Eq. (5), clamped). By convexity the star has

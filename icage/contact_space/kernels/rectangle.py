@@ -1,4 +1,4 @@
-"""One convex region of a contact space rectangle: clip, least sigma, seams. [Bunis2018, V-A]
+"""One convex region of a contact space rectangle: clip, least sigma, seams. [Bunis2018, Sec. V-A]
 
 Coordinates in a rectangle are (s, u): how far finger i is along edge j and finger i + 1 along edge
 k. A region is the part of the rectangle where the third finger is in piece c of the plane. It is
@@ -110,7 +110,7 @@ def region_corners(space, i, j, k, c, corners, spare):
 
 @compiled
 def least_on_edge(space, i, j, k, s1, u1, s2, u2):
-    """Least sigma on a segment and where: the extremum, clamped to it. [Bunis2018, Eq. (5)]"""
+    """Least sigma on a segment and where: the extremum, clamped. [Bunis2018, Eq. (5), Lemma 4.4]"""
     ax, ay = finger_at(space, j, s1)
     bx, by = finger_at(space, k, u1)
     gx, gy = ax - bx, ay - by

@@ -1,7 +1,7 @@
 """Ray shooting for tunnel edges: one finger stays, the hand shrinks until another one touches.
 
-[Bunis2018, V-B]. The kept finger f stays where it is and the hand keeps its orientation, so both
-other fingers run straight at f; what stops them first is a wall, or each other at f: a pinch.
+[Bunis2018, Sec. V-B]. The kept finger f stays where it is and the hand keeps its orientation, so
+both other fingers run straight at f; what stops them first is a wall, or each other at f: a pinch.
 """
 
 # pyright: basic

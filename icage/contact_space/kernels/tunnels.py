@@ -1,11 +1,12 @@
 """All tunnel edges of a hand at once, so that a search can take them in either direction. Our own.
 
 A tunnel edge joins a minimum v of contact space that is none of free space to a region below it.
-[Bunis2018, V-B] adds it when the search closes v; a search that comes from *below* never learns of
-it, although the hand may open along it just as well. Then basins, and in rare cases the escape, are
-met too late. The minima in question need two contacts only, and the third finger is free: so they
-are local minima of the distance between two edges, whatever the hand, and O(n^2) pairs of edges
-tell all candidates.
+[Bunis2018, Sec. V-B] adds it when the search closes v; a search that comes from *below* never
+learns of it, although the hand may open along it just as well. Then basins, and in rare cases the
+escape, are met too late. The minima in question need two contacts only, with the third finger
+free: so they are local minima of the distance between two edges, whatever the hand, and O(n^2)
+pairs of edges tell all candidates. With both directions contact space and free space have the same
+sublevels. [Bunis2018, Def. 9, Lemma 4.3]
 """
 
 # pyright: basic

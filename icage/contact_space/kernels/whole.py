@@ -55,7 +55,7 @@ def all_edges(space, regions, nodes, known, tunnels):
     """Edges (e, 3) = from, to (-1: a pinch), kind and levels (e,) of the whole graph.
 
     Kind 0 is a seam, 1 a tunnel edge. As in the search, tunnels start only where no seam at the
-    level of a least node leads deeper and the third finger is free. [Bunis2018, V-B]
+    level of a least node leads deeper and the third finger is free. [Bunis2018, Sec. V-B]
     """
     edges, values = np.empty((1024, 3), np.int64), np.empty((1024, 1))
     corners, spare = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
