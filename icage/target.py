@@ -16,7 +16,14 @@ from icage.exterior import Pieces
 from icage.hand import HandShape
 from icage.kernels.tree import births
 from icage.solver import Configuration, Terrain
-from icage.tolerance import DEPTH_CUT, PLATEAU, SAME_POINT, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import (
+    DEPTH_CUT,
+    PLATEAU,
+    SAME_POINT,
+    SLIDE_GIVE,
+    TARGET_SHIFT,
+    TARGET_TURN,
+)
 
 _MAX_CELLS = 20_000
 """Cells round a target that are looked at; a vertex of a fine fan has some tens of pieces."""
@@ -178,9 +185,9 @@ def plateau_through(
 
 
 def translations(terrain: Terrain, cell: IntArray, w: complex) -> list[complex]:
-    """Corners d of the convex set of hands in a cell that have this very w, to SAME_POINT."""
+    """Corners d of the convex set of hands in a cell that have this very w, to SLIDE_GIVE."""
     pieces, z = terrain.pieces, terrain.hand.z
-    give = 0.1 * SAME_POINT * pieces.diameter
+    give = SLIDE_GIVE * pieces.diameter
     corners: list[complex] = []
     for finger, k in enumerate(cell.tolist()):
         s = slice(int(pieces.ptr[k]), int(pieces.ptr[k + 1]))

@@ -18,6 +18,19 @@ def test_levels_of_point_fingers(first: int) -> None:
         assert outcome.runs >= 6
 
 
+def test_edges_parallel_to_1e_6_are_no_plateau() -> None:
+    """The only one of 20,000 targets on which they once differed; the cells were wrong."""
+    outcome = judge_points(2018, 19837)
+    assert outcome.verdict == "cage"
+    assert not outcome.disagreements + outcome.exceptions
+
+
+@pytest.mark.parametrize("number", [62, 93])
+def test_basins_that_only_a_tunnel_edge_from_above_connects(number: int) -> None:
+    outcome = judge_large(2018, number)
+    assert not outcome.disagreements + outcome.exceptions
+
+
 @pytest.mark.parametrize("number", range(3))
 def test_levels_on_large_polygons(number: int) -> None:
     outcome = judge_large(SEED, number)
