@@ -14,7 +14,7 @@ from sim.config import SimConfig
 from sim.hand_model import HandKinematics, build_hand
 
 SHOWN_PHI_DEG: Final = (33.0, 130.0)
-"""The hand of the paper's pliers. [Bunis2018, Sec. VII-A]"""
+"""The hand of the paper's pliers. [Bunis2018, Sec. VII-B]"""
 
 SHOWN_RADIUS: Final = 0.03
 """[diameter] Finger radius of the file: 6 mm on a tool of 200 mm."""
