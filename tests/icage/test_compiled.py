@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import subprocess
 import sys
@@ -35,25 +36,26 @@ def test_a_change_in_any_kernel_makes_every_cached_one_stale() -> None:
     assert cache._cache_file._source_stamp == kernel_digest()
 
 
-def test_stale_machine_code_is_not_loaded(tmp_path: Path) -> None:
+def test_stale_machine_code_is_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """numba compares the stamp that we set with the one in its index when it loads."""
     import numba
 
-    source = tmp_path / "one.py"
+    source = tmp_path / "one_for_the_cache.py"
     source.write_text("def one():\n    return 1\n")
-    scope: dict = {}
-    exec(compile(source.read_text(), str(source), "exec"), scope)
-    dispatcher = numba.njit(cache=True)(scope["one"])
-    dispatcher._cache._cache_file._source_stamp = "first"
-    assert dispatcher() == 1
-    again = numba.njit(cache=True)(scope["one"])
-    again._cache._cache_file._source_stamp = "first"
-    again()
-    assert sum(again.stats.cache_hits.values()) == 1
-    stale = numba.njit(cache=True)(scope["one"])
-    stale._cache._cache_file._source_stamp = "second"
-    stale()
-    assert sum(stale.stats.cache_hits.values()) == 0
+    spec = importlib.util.spec_from_file_location(source.stem, source)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, source.stem, module)  # numba pickles it by its name
+    spec.loader.exec_module(module)
+
+    def hits(stamp: str) -> int:
+        dispatcher = numba.njit(cache=True)(module.one)
+        dispatcher._cache._cache_file._source_stamp = stamp
+        assert dispatcher() == 1
+        return sum(dispatcher.stats.cache_hits.values())
+
+    assert [hits("first"), hits("first"), hits("second")] == [0, 1, 0]
 
 
 @pytest.mark.slow
