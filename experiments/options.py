@@ -88,6 +88,26 @@ def check_output(option: str, target: str | None, *inputs: Path) -> None:
         raise InputError(f"{option} {target!r} cannot be written: {reason(error)}") from error
 
 
+def check_folder(option: str, folder: Path) -> None:
+    """Refuse an output folder that cannot be made or written to, before any work.
+
+    Raises
+    ------
+    InputError:
+        It or the nearest folder above it is a file, or may not be written to.
+    """
+    try:
+        nearest = next(part for part in (folder, *folder.absolute().parents) if part.exists())
+        if not nearest.is_dir():
+            raise InputError(
+                f"{option} {str(folder)!r}: {str(nearest)!r} is a file; a folder is needed"
+            )
+        if not os.access(nearest, os.W_OK):
+            raise InputError(f"{option} {str(folder)!r}: the folder may not be written to")
+    except (OSError, ValueError) as error:
+        raise InputError(f"{option} {str(folder)!r} cannot be a folder: {reason(error)}") from error
+
+
 def reason(error: OSError | ValueError) -> str:
     """Why a path cannot be used, without the path again."""
     return (error.strerror if isinstance(error, OSError) else None) or str(error)

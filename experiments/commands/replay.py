@@ -46,13 +46,14 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from experiments.inputs import case_file
+    from experiments.options import check_folder
     from icage.formats.case_json import read_case
     from models import case_paths, object_names
 
     shipped = args.case in object_names() and not Path(args.case).is_file()
     paths = case_paths(args.case) if shipped else (case_file(args.case),)
     folder = Path(args.out)
-    _check_folder(folder)
+    check_folder("--out", folder)
     cases = [read_case(path) for path in paths]
 
     from experiments.progress import stage_bar
@@ -77,25 +78,6 @@ def run(args: argparse.Namespace) -> int:
     for sentence in done.failures:
         print(f"icage: replay failed: {sentence}", file=sys.stderr)
     return 1 if done.failures else 0
-
-
-def _check_folder(folder: Path) -> None:
-    """Refuse a place that cannot be written to before any work."""
-    import os
-
-    from experiments.options import reason
-    from icage.errors import InputError
-
-    try:
-        nearest = next(part for part in (folder, *folder.absolute().parents) if part.exists())
-        if not nearest.is_dir():
-            raise InputError(
-                f"--out {str(folder)!r}: {str(nearest)!r} is a file; a folder is needed"
-            )
-        if not os.access(nearest, os.W_OK):
-            raise InputError(f"--out {str(folder)!r}: the folder may not be written to")
-    except (OSError, ValueError) as error:
-        raise InputError(f"--out {str(folder)!r} cannot be a folder: {reason(error)}") from error
 
 
 _HEAD = (

@@ -29,6 +29,10 @@ RULE: Final = _rgb("C9CED2")
 PAPER: Final = (1.0, 1.0, 1.0)
 GOOD: Final = _rgb("1B7F5A")
 BAD: Final = _rgb("B3261E")
+SKY: Final = _rgb("56B4E9")
+ORANGE: Final = _rgb("E69F00")
+PURPLE: Final = _rgb("A8478A")
+"""More of the same palette, for marks that are no fingers (the purple darker, to show on grey)."""
 
 
 def tint(colour: Colour, strength: float) -> Colour:

@@ -1,7 +1,8 @@
-"""The object's boundary by arclength, and the two-finger contact spaces over it. [Bunis2018, IV-A]
+"""The object's boundary by arclength, and the two-finger contact spaces over it.
 
-Plain numpy, an equation each: the readable side of ``kernels/rectangle.py``. Pairs are numbered by
-their first finger, 0..2 in arrays: pair i is fingers i and i + 1 (mod 3) of U_{i,i+1}.
+[Bunis2018, Sec. IV-A]. Plain numpy, an equation each: the readable side of
+``kernels/rectangle.py``. Pairs are numbered by their first finger, 0..2 in arrays: pair i is
+fingers i and i + 1 (mod 3) of U_{i,i+1}.
 """
 
 from __future__ import annotations

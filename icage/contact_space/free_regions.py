@@ -21,9 +21,10 @@ def exterior_rings(plane: Plane) -> list[FloatArray]:
 def regions_of_rectangle(
     plane: Plane, boundary: Boundary, pair: int, j: int, k: int
 ) -> list[tuple[int, FloatArray]]:
-    """Piece and corners (m, 2) in (s_i, s_{i+1}) of every region with an area. [Bunis2018, V-A]
+    """Piece and corners (m, 2) in (s_i, s_{i+1}) of every region with an area.
 
-    The pieces of the plane, pulled back by Eq. (4): what no obstacle covers, cut into convex parts.
+    [Bunis2018, Sec. V-A]. The pieces of the plane, pulled back by Eq. (4): what no obstacle
+    covers, cut into convex parts.
     """
     finger = Parallelogram.over(boundary, plane.hand, pair, j, k)
     low, high = finger.corners.min(axis=0), finger.corners.max(axis=0)

@@ -40,7 +40,7 @@ class Node:
         "vertex" of a convex region, "extremum" of sigma on one of its edges (Eq. (5)), or
         "escape": a vertex at which the fingers are pinched.
     third:
-        s_{i+2} if all three fingers touch, [unit]; None if the third is free. [Bunis2018, V-A]
+        s_{i+2} if all three fingers touch, [unit]; None if the third is free. [Bunis2018, Sec. V-A]
     """
 
     s: FloatArray

@@ -1,7 +1,8 @@
-"""Contact space obstacles: where the third finger would be inside the object. [Bunis2018, IV-B]
+"""Contact space obstacles: where the third finger would be inside the object.
 
-The object's convex pieces are pulled back rectangle by rectangle (Eq. (4)), as half planes: so a
-singular T needs no care. What is left of a rectangle are the free regions of the search.
+[Bunis2018, Sec. IV-B]. The object's convex pieces are pulled back rectangle by rectangle (Eq. (4)),
+as half planes: so a singular T needs no care. What is left of a rectangle are the free regions of
+the search.
 """
 
 from __future__ import annotations

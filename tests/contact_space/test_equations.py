@@ -21,7 +21,7 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from tests.oracles.targets import random_target
 
-SEEDS = range(8)
+SEEDS = range(4)
 """Random targets that every law is tried on."""
 
 
@@ -261,9 +261,10 @@ def test_sectors_meet_where_the_normals_of_a_target_meet(seed: int):
     boundary = Boundary.of(Outline(target.vertices))
     size = 3.0 * Outline(target.vertices).diameter
     sectors = [sector_at(boundary, p, size) for p in target.contacts]
-    if any(s is None for s in sectors):
-        pytest.skip("a convex vertex is touched")
     held = [s for s in sectors if s is not None]
+    assert len(held) == 3
+    if any(s.convex for s in held):
+        pytest.skip("a convex vertex is merely touched: the others may balance alone")
     point = concurrency_point(held)
     assert point is not None
     for sector in held:
@@ -273,6 +274,7 @@ def test_sectors_meet_where_the_normals_of_a_target_meet(seed: int):
             n = sector.normals[0]
             way = point - sector.contact
             assert abs(way[0] * n[1] - way[1] * n[0]) <= 1e-6 * max(size, np.hypot(*way))
-    # any point of the common area, projected, is a grasp that balances: contacts differ, kind same
     assert three_finger_kind(boundary, target.contacts, 1e-6 * size) is not None
-    assert common_area(held).area >= 0.0
+    common = common_area(held)
+    if common.area > 1e-6 * size**2 and all(s.vertex for s in held):
+        assert shapely.distance(shapely.Point(point), common) <= 1e-9 * size

@@ -1,0 +1,48 @@
+"""``icage figures CASE --out DIR``: the paper's figures, drawn from a case."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    from experiments.paper import FIGURES
+
+    parser = subparsers.add_parser(
+        "figures",
+        help="the paper's figures, drawn from a case",
+        description="Draw the figures of Bunis et al. 2018 from a case by the paper's own method: "
+        + "; ".join(f"{name}: {words}" for name, words in FIGURES.items())
+        + ".",
+    )
+    parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
+    parser.add_argument("--out", metavar="DIR", required=True, help="folder, made if it is missing")
+    parser.add_argument(
+        "--format", choices=("svg", "pdf", "png"), default="svg", help="file format (svg)"
+    )
+    parser.add_argument(
+        "--only", metavar="NAME", nargs="+", choices=tuple(FIGURES), help="draw these figures only"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Search once, then draw what was asked for."""
+    from pathlib import Path
+
+    from experiments.inputs import case_file
+    from experiments.options import check_folder
+    from experiments.paper import FIGURES
+    from icage.formats.case_json import read_case
+
+    out = Path(args.out)
+    check_folder("--out", out)
+    case = read_case(case_file(args.case))
+
+    from experiments.paper.figures import write_figures
+
+    names = [name for name in FIGURES if args.only is None or name in args.only]
+    for path, words in write_figures(case, names, out, args.format):
+        print(f"{path}: {words}", flush=True)
+    return 0

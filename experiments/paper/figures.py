@@ -1,0 +1,34 @@
+"""All figures of a case, one file each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from importlib import import_module
+from pathlib import Path
+
+import matplotlib
+
+from experiments.paper import FIGURES
+from experiments.paper.page import SETTINGS, save
+from experiments.paper.study import Study
+from icage.formats.case_json import Case
+
+
+def write_figures(
+    case: Case, names: Sequence[str], out: Path, kind: str
+) -> Iterator[tuple[Path, str]]:
+    """Draw the named figures into ``out`` (made if missing), file and what it shows one by one.
+
+    Raises
+    ------
+    InputError:
+        The contacts are no immobilizing grasp.
+    """
+    study = Study.of(case)
+    out.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        with matplotlib.rc_context(SETTINGS):
+            figure, note = import_module(f"experiments.paper.{name}").draw(study)
+            path = out / f"{name}.{kind}"
+            save(figure, path)
+        yield path, FIGURES[name] + ("" if note is None else f"; {note}")

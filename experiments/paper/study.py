@@ -1,0 +1,141 @@
+"""What all figures of one case share: polygon, hand, search, cage; each computed once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from icage.cage import Cage
+from icage.contact_space.boundary import Boundary
+from icage.contact_space.engine import ContactLook, ContactSpace
+from icage.contact_space.exploration import Exploration, Plane
+from icage.errors import InputError
+from icage.finger import directions_on_arcs, offsets
+from icage.formats.case_json import Case
+from icage.hand import HandShape
+from icage.hand_grasps import grasps_of_hand
+from icage.outline import Outline
+from icage.planner import plan
+from icage.regions import FingerRegion, caging_regions
+from icage.statics import contacts_reason
+from icage.tolerance import TARGET_SHIFT, TARGET_TURN
+
+_ARCS = (2, 3, 4, 8, 16)
+"""Segments a quadrant to try: few, so that the rectangles of contact space can be read."""
+
+TOUCH = 1e-7
+"""[diameter] A finger this close to the polygon touches it."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A case as its figures see it; with discs, point fingers on the inner offset polygon."""
+
+    case: Case
+    polygon: Outline
+    look: ContactLook
+    segments: int
+
+    @classmethod
+    def of(cls, case: Case) -> Study:
+        """Run the search of a case.
+
+        Raises
+        ------
+        InputError:
+            The contacts are no strict local minimum, so that there is no search to draw.
+        """
+        hand = HandShape.from_contacts(case.contacts)
+        if case.finger_radius == 0.0:
+            look = ContactSpace().look(
+                case.outline, hand, case.contacts, TARGET_SHIFT, TARGET_TURN
+            )  # fmt: skip
+            if look is not None:
+                return cls(case, case.outline, look, 0)
+        for segments in _ARCS if case.finger_radius > 0.0 else ():
+            found = _on_chords(case, hand, segments)
+            if found is not None:
+                return cls(case, *found, segments)
+        why = contacts_reason(case.outline, case.contacts) if not case.finger_radius else "no grasp"
+        raise InputError(f"{case.name}: the figures need an immobilizing grasp; {why}")
+
+    @property
+    def found(self) -> Exploration:
+        """The search."""
+        return self.look.found
+
+    @property
+    def plane(self) -> Plane:
+        """The polygon, the hand and the pieces of the plane."""
+        return self.look.found.plane
+
+    @property
+    def hand(self) -> HandShape:
+        """The hand's shape."""
+        return self.plane.hand
+
+    @property
+    def sigma_0(self) -> float:
+        """[unit]."""
+        return self.look.target.sigma_0
+
+    @property
+    def near(self) -> float:
+        """[unit] Within this a finger touches."""
+        return TOUCH * self.polygon.diameter
+
+    @cached_property
+    def boundary(self) -> Boundary:
+        """The polygon by arclength."""
+        return Boundary.of(self.polygon)
+
+    @cached_property
+    def target(self) -> FloatArray:
+        """Contacts (3, 2) of the target on the polygon."""
+        return self.plane.contacts(self.look.target.hand)
+
+    @cached_property
+    def cage(self) -> Cage:
+        """The cage by the search, point fingers on the polygon."""
+        return self.look.cage(self.target, self.polygon, 0.0)
+
+    @cached_property
+    def regions(self) -> tuple[FingerRegion, ...]:
+        """Caging regions on the polygon, from inside; by the cells' method."""
+        cage = plan(self.polygon, self.target)
+        if cage.verdict == "not_a_cage":
+            return ()
+        return tuple(r for r in caging_regions(cage, gap=3e-3) if r.bound == "inner")
+
+    @cached_property
+    def grasps(self) -> list[FloatArray]:
+        """Contacts (3, 2) of all immobilizing grasps of this hand, by sigma."""
+        return grasps_of_hand(self.polygon, self.hand)
+
+    def places(self, contacts: FloatArray, pair: int) -> FloatArray:
+        """Where a hand (3, 2) is in U_{i,i+1}: (k, 2), none if one of both fingers is free.
+
+        More than one at s = 0, which is s = L too.
+        """
+        ends: list[list[float]] = []
+        for finger in (pair, (pair + 1) % 3):
+            _, s, gap = self.boundary.nearest(contacts[finger])
+            total = self.boundary.perimeter
+            if gap > self.near:
+                return np.empty((0, 2))
+            at_seam = min(s, total - s) <= self.near
+            ends.append([0.0, total] if at_seam else [s])
+        return np.array([[a, b] for a in ends[0] for b in ends[1]])
+
+
+def _on_chords(case: Case, hand: HandShape, segments: int) -> tuple[Outline, ContactLook] | None:
+    """The inner offset polygon and the search on it, if the target is a minimum there."""
+    through = directions_on_arcs(case.outline, case.finger_radius, case.contacts)
+    polygon = offsets(case.outline, case.finger_radius, segments, through).inner
+    chord = case.finger_radius * np.pi / segments / polygon.diameter if through else 0.0
+    reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
+    look = ContactSpace().look(polygon, hand, case.contacts, reach, turn)
+    return None if look is None else (polygon, look)
