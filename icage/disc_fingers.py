@@ -58,7 +58,9 @@ def plan_discs(
     if not lower:
         inner = offsets(outline, radius, 32).inner
         return replace(engine.cage(inner, hand, contacts, outline, radius), contacts=contacts)
-    basis = max(lower, key=lambda look: (look.sigma_max, look.segments))
+    # of equal levels the finest polygon, whatever the last digit says
+    top = max(look.sigma_max for look in lower) * (1.0 - 1e-12)
+    basis = max((k for k in lower if k.sigma_max >= top), key=lambda look: look.segments)
     cage = basis.look.cage(contacts, outline, radius)
     if cage.verdict == "not_a_cage":
         return replace(cage, contacts=contacts)
