@@ -14,7 +14,9 @@ from typing import Any, Final
 import numpy as np
 
 from experiments.starts import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
-from icage.cage import Cage
+from icage.agreement import disagreements
+from icage.cage import Cage, Puncture
+from icage.contact_space.engine import CONTACT_SPACE
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan
@@ -46,6 +48,8 @@ class Run:
 
     case: Case
     cage: Cage
+    second: Cage
+    """The cage by the paper's method, for comparison and for the course of its search."""
     scene: Scene
     which: StartSet
     starts: Starts
@@ -100,6 +104,7 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
     for number, case in enumerate(cases):
         report("planning", number, len(cases))
         cage = plan(case.outline, case.contacts, case.finger_radius)
+        second = plan(case.outline, case.contacts, case.finger_radius, CONTACT_SPACE)
         if cage.verdict == "not_a_cage":
             raise InputError(f"{case.name} is not a cage ({cage.why}): there is nothing to replay")
         scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
@@ -116,7 +121,7 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
             closing = _Bar(report, f"closing {case.name} {which}", trials)
             closings = close_many(scene, starts.placements, threads, closing)
             verdicts = judge(closings, cage.grasps, case.outline)
-            runs.append(Run(case, cage, scene, which, starts, closings, verdicts))
+            runs.append(Run(case, cage, second, scene, which, starts, closings, verdicts))
     report("planning", len(cases), len(cases))
     return Replay(tuple(runs), seed, tuple(skipped))
 
@@ -140,6 +145,8 @@ class _Bar:
 
 def run_failures(run: Run) -> Iterator[str]:
     """What did not hold in a run. Nothing is forgiven here: the limits are those promised."""
+    for line in disagreements(run.cage, run.second):
+        yield f"{run.title}: cells and contact space disagree, {line}"
     counts, trials = run.counts, len(run.closings)
     wanted = ("target",) if run.which == "guaranteed" else ("target", "other_grasp")
     missed = {name: k for name, k in counts.items() if k and name not in wanted}
@@ -180,6 +187,7 @@ def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
         "grasp": run.case.name,
         "set": run.which,
         "plan": plan_document,
+        "contact_space": _second_document(run),
         "unit": run.case.unit,
         "diameter": size,
         "trials": len(run.closings),
@@ -196,6 +204,26 @@ def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
         "steps_mean": float(run.closings.steps.mean()),
         "failures": list(run_failures(run)),
     }
+
+
+def _second_document(run: Run) -> dict[str, Any]:
+    """What the paper reports of its own search: tunnel edges, kind of the escape puncture."""
+    log, escape = run.second.search, escape_puncture(run.second)
+    return {
+        "sigma_first": run.second.sigma_first,
+        "sigma_max": run.second.sigma_max,
+        "rectangles_explored": None if log is None else log.rectangles_explored,
+        "tunnel_edges_tried": None if log is None else log.tunnel_edges_tried,
+        "tunnel_edges_used": None if log is None else log.tunnel_edges_used,
+        "escape_puncture_fingers": None
+        if escape is None
+        else [k for k in (1, 2, 3) if k not in escape.free_fingers],
+    }
+
+
+def escape_puncture(cage: Cage) -> Puncture | None:
+    """The puncture through which the object escapes, if it can."""
+    return next((p for p in cage.punctures if p.kind == "escape"), None)
 
 
 def _largest(values: np.ndarray) -> float | None:

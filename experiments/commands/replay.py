@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from experiments.options import count, seed
@@ -105,6 +106,7 @@ def summary(done: Replay, name: str, folder: Path) -> list[str]:
         *table,
         "sigma over sigma_0; position and depth over the diameter, angle in rad; lost = jammed, "
         "diverged, timed out or unmatched",
+        *_searches(done),
         *(f"not replayed: {text}" for text in done.skipped),
         f"{'FAILED' if done.failures else 'held'}: {_verdict(done)}; files in {folder}",
     ]
@@ -127,6 +129,28 @@ def _row(run: Any) -> tuple[str, ...]:
         str(counts["other_grasp"]), str(counts["escaped"]), str(lost), *worst,
         f"{run.closings.penetration_max.max():.1e}",
     )  # fmt: skip
+
+
+def _searches(done: Replay) -> Iterator[str]:
+    """One line a grasp, as the paper reports its own search. [Bunis2018, Sec. VII-B]"""
+    from experiments.replay import escape_puncture
+    from icage.agreement import disagreements
+
+    for run in done.runs:
+        if run.which != "guaranteed":
+            continue
+        log, escape = run.second.search, escape_puncture(run.second)
+        way = "no escape puncture"
+        if escape is not None:
+            touching = [str(k) for k in (1, 2, 3) if k not in escape.free_fingers]
+            way = f"a {len(touching)}-finger escape puncture (fingers {', '.join(touching)})"
+        tunnels = 0 if log is None else log.tunnel_edges_used
+        yield (
+            f"{run.case.name}: contact space agrees to 1e-7; {way}, "
+            f"{tunnels} tunnel edge{'' if tunnels == 1 else 's'} in its graph"
+            if not disagreements(run.cage, run.second)
+            else f"{run.case.name}: contact space DISAGREES"
+        )
 
 
 def _verdict(done: Replay) -> str:
