@@ -83,10 +83,12 @@ def concurrency_point(sectors: list[Sector]) -> FloatArray | None:
         if np.linalg.matrix_rank(across, tol=1e-9) < 2:
             return None
         return np.linalg.lstsq(across, rows, rcond=None)[0]
-    common = _shared([s.forward for s in sectors if s.vertex], lines, sectors)
-    if common.is_empty:
-        both = [shapely.union(s.forward, s.backward) for s in sectors if s.vertex]
-        common = _shared(both, lines, sectors)
+    vertices = [s for s in sectors if s.vertex]
+    both = [shapely.union(s.forward, s.backward) for s in vertices]
+    common = _shared([s.forward for s in sectors], lines, sectors)
+    for cones in ([s.forward for s in vertices], both):
+        if common.is_empty:
+            common = _shared(cones, lines, sectors)
     if common.is_empty:
         return None
     part = max(shapely.get_parts(common), key=lambda g: g.length)
