@@ -8,7 +8,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, not_a_cage
-from icage.contact_space.basins import escape_edge, first_level, grasps_and_punctures, meetings
+from icage.contact_space.basins import first_level, grasps_and_punctures, meetings
 from icage.contact_space.exploration import Exploration, Plane, explore_from
 from icage.contact_space.kernels.explore import TUNNEL
 from icage.contact_space.target import ContactTarget, find_contact_target
@@ -95,10 +95,6 @@ class ContactLook:
             return plane.contacts(last)[(int(found.regions[origin, 0]) + keep) % 3]
         _, ends = plane.least(found.regions[-1])
         return plane.contacts(ends[0])[int(found.regions[-1, 0])]
-
-    def escape_kind(self) -> str:
-        """What the escape puncture crosses: "side", "diagonal", "wall", "tunnel" or "pinch"."""
-        return self.found.kind(escape_edge(self.found))
 
 
 @dataclass(frozen=True, slots=True)
