@@ -1,9 +1,9 @@
 """The caging regions of the fingers: where each may be below a level.
 
 [Bunis2018, Sec. III-B, Sec. VI]. Every configuration of the target's component below the level puts
-finger i into its region, and every point of the region is reached by one. The converse, "each finger
-in its region and sigma below the level", is the paper's condition: nearly always right and not
-always (docs/paper_map.md); the joint query is the authority.
+finger i into its region, and every point of the region is reached by one. The converse, "each
+finger in its region and sigma below the level", is the paper's condition: nearly always right and
+not always (docs/paper_map.md); the joint query is the authority.
 """
 
 from __future__ import annotations

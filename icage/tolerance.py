@@ -59,6 +59,6 @@ PLATEAU: Final = 1e-6
 """[diameter] A set of minima longer than this is a plateau; shorter ones are rounding."""
 
 SLIDE_GIVE: Final = 1e-13
-"""[diameter] How far into a wall a finger may be on a plateau: above the rounding of w, and so small
-that edges which are parallel to 1e-6 only do not look like a plateau (at 1e-11 one of 20,000 random
-targets did)."""
+"""[diameter] How far into a wall a finger may be on a plateau: above the rounding of w, and so
+small that edges which are parallel to 1e-6 only do not look like a plateau (at 1e-11 one of 20,000
+random targets did)."""
