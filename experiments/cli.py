@@ -1,18 +1,21 @@
 """The command line: ``icage COMMAND ...``. Its exit codes are a promise.
 
-0: the question was answered. 2: bad input or wrong options, one line on standard error, nothing
-written. 1: a check that ran and failed, or our fault. 130: interrupted.
+0: the question was answered. 2: bad input, wrong options or a place that takes no answer, one line
+on standard error, nothing written. 1: a check that ran and failed, nobody reads standard output, or
+our fault. 130: interrupted.
 """
 
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import pkgutil
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, NoReturn
+from io import TextIOWrapper
+from typing import Any, NoReturn, TextIO
 
 import experiments.commands
 import icage
@@ -20,6 +23,9 @@ from icage.errors import InputError
 
 _LONGEST = 800
 """Characters of an error line; a file name may be longer than anyone reads."""
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+"""What a full, locked or broken disk answers."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -52,9 +58,7 @@ def parser() -> Parser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+    heard = _open_streams()
     try:
         args = parser().parse_args(arguments)
         code: int = args.run(args)
@@ -66,16 +70,41 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say("interrupted")
         return 130
     except BrokenPipeError:
-        # The reader went away; keep the interpreter from complaining while it closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return 1
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in _NO_ROOM:
+            _say(f"{error.filename or 'the answer'} cannot be written: {error.strerror}")
+            _forget_output()
+            return 2
         if os.environ.get("ICAGE_DEBUG"):
             raise
         reason = f"{type(error).__name__}: {error}"
         _say(f"internal: {reason} (our fault; ICAGE_DEBUG=1 shows where)")
         return 1
-    return code
+    return code if heard else code or 1
+
+
+def _open_streams() -> bool:
+    """Standard streams that take any text; a closed one leads nowhere, false if that is stdout."""
+    heard = sys.stdout is not None
+    if not heard:
+        sys.stdout = _nowhere()
+    if sys.stderr is None:  # else what is printed there would appear on standard output
+        sys.stderr = _nowhere()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    return heard
+
+
+def _nowhere() -> TextIO:
+    return os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
+
+
+def _forget_output() -> None:
+    """Keep the interpreter from complaining, as it ends, about what standard output holds back."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _say(message: str) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
+from collections.abc import Sequence
 from pathlib import Path
 
-from icage.errors import InputError
+from experiments.whole_files import check_folder_writable, check_writable
+from icage.errors import InputError, OutputError
 
 UNITS = ("m", "mm", "cm")
 
@@ -55,11 +56,19 @@ def _whole(text: str, low: int, high: int) -> int:
     return int(text)
 
 
+def file_name(text: str) -> str:
+    """The path of a file or folder; an empty one would mean the current folder."""
+    if not text:
+        raise argparse.ArgumentTypeError("'' names no file")
+    return text
+
+
 def add_json(parser: argparse.ArgumentParser) -> None:
     """``--json FILE|-``."""
     parser.add_argument(
         "--json",
         metavar="FILE|-",
+        type=lambda text: "-" if text == "/dev/stdout" else text,
         help="write the answer as JSON, - for standard output; otherwise a summary is printed",
     )
 
@@ -80,21 +89,27 @@ def check_output(option: str, target: str | None, *inputs: Path) -> None:
             raise InputError(f"{option} {target!r} is a folder; a file name is needed")
         if not path.parent.is_dir():
             raise InputError(f"{option} {target!r}: there is no folder {str(path.parent)!r}")
-        if not os.access(path.parent, os.W_OK):
-            raise InputError(f"{option} {target!r}: the folder may not be written to")
-        if any(path.exists() and given.exists() and path.samefile(given) for given in inputs):
+        if _is_one_of(path, inputs):
             raise InputError(f"{option} {target!r} would overwrite an input file")
+        check_writable(path)
+    except OutputError as error:
+        raise InputError(f"{option} {error}") from error
     except (OSError, ValueError) as error:
         raise InputError(f"{option} {target!r} cannot be written: {reason(error)}") from error
 
 
-def check_folder(option: str, folder: Path) -> None:
+def check_folder(
+    option: str, folder: Path, names: Sequence[str] = (), inputs: Sequence[Path] = ()
+) -> None:
     """Refuse an output folder that cannot be made or written to, before any work.
+
+    ``names`` are the files that will be written there.
 
     Raises
     ------
     InputError:
-        It or the nearest folder above it is a file, or may not be written to.
+        It or the nearest folder above it is a file, or may not be written to; one of the files
+        is an input.
     """
     try:
         nearest = next(part for part in (folder, *folder.absolute().parents) if part.exists())
@@ -102,10 +117,18 @@ def check_folder(option: str, folder: Path) -> None:
             raise InputError(
                 f"{option} {str(folder)!r}: {str(nearest)!r} is a file; a folder is needed"
             )
-        if not os.access(nearest, os.W_OK):
-            raise InputError(f"{option} {str(folder)!r}: the folder may not be written to")
+        check_folder_writable(nearest)
+        for name in names:
+            if _is_one_of(folder / name, inputs):
+                raise InputError(f"{option} {str(folder)!r}: {name} would overwrite an input file")
     except (OSError, ValueError) as error:
-        raise InputError(f"{option} {str(folder)!r} cannot be a folder: {reason(error)}") from error
+        raise InputError(
+            f"{option} {str(folder)!r} cannot be written to: {reason(error)}"
+        ) from error
+
+
+def _is_one_of(path: Path, inputs: Sequence[Path]) -> bool:
+    return any(path.exists() and given.exists() and path.samefile(given) for given in inputs)
 
 
 def reason(error: OSError | ValueError) -> str:

@@ -22,6 +22,7 @@ from experiments.json_out import write_json
 from experiments.plan_json import plan_document
 from experiments.replay import Replay, Report, Run, run_document
 from experiments.versions import versions
+from icage.errors import OutputError
 from icage.membership import VERDICTS, query
 from icage.regions import FingerRegion
 from sim.judge import OUTCOMES
@@ -36,10 +37,18 @@ def whole_folder(folder: Path) -> Iterator[Path]:
 
     ``folder`` is made if need be. Files of an earlier replay that this one did not write again are
     removed: they would speak of another run.
+
+    Raises
+    ------
+    OutputError:
+        Nothing can be written there.
     """
     made = [part for part in (folder, *folder.parents) if not part.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".replay-", dir=folder))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=".replay-", dir=folder))
+    except OSError as error:
+        raise OutputError(f"{str(folder)!r} cannot be written to: {error.strerror}") from error
     try:
         yield staging
         for name in ALL:

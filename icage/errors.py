@@ -35,5 +35,9 @@ class FormatError(InputError):
     """A drawing cannot be read."""
 
 
+class OutputError(InputError):
+    """The place a user named for an answer cannot take it."""
+
+
 class GeometryError(IcageError):
     """A computation broke one of its own invariants: our fault, never the user's."""

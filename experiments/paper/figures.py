@@ -11,6 +11,7 @@ import matplotlib
 from experiments.paper import FIGURES
 from experiments.paper.page import SETTINGS, save
 from experiments.paper.study import Study
+from icage.errors import OutputError
 from icage.formats.case_json import Case
 
 
@@ -22,10 +23,13 @@ def write_figures(
     Raises
     ------
     InputError:
-        The contacts are no immobilizing grasp.
+        The contacts are no immobilizing grasp, or nothing can be written into ``out``.
     """
     study = Study.of(case)
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{str(out)!r} cannot be made: {error.strerror}") from error
     for name in names:
         with matplotlib.rc_context(SETTINGS):
             figure, note = import_module(f"experiments.paper.{name}").draw(study)

@@ -121,3 +121,41 @@ def test_an_outline_becomes_a_case_file(tmp_path: Path, capsys: Any):
     made, shipped = read_object(file), read_object(outline_path("saw"))
     assert made.outline.vertices == pytest.approx(shipped.outline.vertices, abs=1e-9)
     assert made.unit == shipped.unit == "mm"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX streams")
+@pytest.mark.parametrize("further", [[], ["--json", "-"]])
+def test_a_closed_standard_output_is_no_drama(further: list[str]):
+    command = 'exec "$@" >&-'
+    done = subprocess.run(
+        ["sh", "-c", command, "sh", *ICAGE, "plan", CASE, *further], stderr=subprocess.PIPE
+    )
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX streams")
+def test_nothing_meant_for_a_closed_standard_error_lands_on_standard_output():
+    done = subprocess.run(
+        ["sh", "-c", 'exec "$@" 2>&-', "sh", *ICAGE, "plan", "none.json"], stdout=subprocess.PIPE
+    )
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="needs /dev/full")
+def test_a_full_standard_output_is_exit_2():
+    """As a stream that is open already: nothing here may name the device as a file to write."""
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [*ICAGE, "plan", CASE, "--json", "-"], stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert done.returncode == 2
+    assert done.stderr == "icage: error: the answer cannot be written: No space left on device\n"
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs /proc")
+@pytest.mark.parametrize(
+    "arguments", [("plan", "--json", "/proc/x.json"), ("replay", "--out", "/proc/x")]
+)
+def test_a_place_that_takes_no_file(arguments: tuple[str, ...], capsys: Any):
+    command, *option = arguments
+    assert "cannot be written" in here(capsys, command, CASE, *option).error_line()

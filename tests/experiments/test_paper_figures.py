@@ -101,7 +101,7 @@ def test_what_cannot_be_drawn(
 def test_a_folder_that_may_not_be_written(tmp_path: Path, capsys: Any):
     tmp_path.chmod(0o500)
     line = here(capsys, "figures", GOLDEN, "--out", str(tmp_path / "o")).error_line()
-    assert "may not be written to" in line
+    assert "cannot be written to: Permission denied" in line
 
 
 @pytest.mark.slow
