@@ -69,8 +69,8 @@ class SearchStep:
 
     ``kind`` is "minimum" (least node of a convex region), "side" (a finger passes a vertex),
     "diagonal" (the third finger passes to the next piece of the plane), "wall" (a gluing seam),
-    "tunnel" or "pinch". ``pair`` are the fingers (1..3) on ``edges``: edge q starts at vertex q of the
-    ring without straight vertices.
+    "tunnel" or "pinch". ``pair`` are the fingers (1..3) on ``edges``: edge q starts at vertex q of
+    the ring without straight vertices.
     """
 
     sigma: float
