@@ -41,7 +41,8 @@ def find_object(text: str, width: float | None = None, unit: str | None = None) 
         path = _given(text)
     if path.suffix.lower() == ".svg":
         measure = parse_unit("m" if unit is None else unit)
-        return Object(path.stem, measure, read_svg(path, width, unit=measure), 0.0)
+        outline = read_svg(path, width, unit=measure)
+        return Object(path.stem, measure, outline, 0.0, (path,))
     if width is not None or unit is not None:
         raise InputError(f"--width and --unit are for drawings (*.svg); {path} has its own")
     return read_object(path)

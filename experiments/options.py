@@ -98,6 +98,11 @@ def check_output(option: str, target: str | None, *inputs: Path) -> None:
         raise InputError(f"{option} {target!r} cannot be written: {reason(error)}") from error
 
 
+def same(one: str, other: str) -> bool:
+    """Whether two paths name the same file, there or not yet."""
+    return Path(one).resolve() == Path(other).resolve()
+
+
 def check_folder(
     option: str, folder: Path, names: Sequence[str] = (), inputs: Sequence[Path] = ()
 ) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from experiments.options import file_name
+
 
 def add_parser(subparsers: Any) -> None:
     """Options of the command."""
@@ -17,8 +19,12 @@ def add_parser(subparsers: Any) -> None:
         + "; ".join(f"{name}: {words}" for name, words in FIGURES.items())
         + ".",
     )
-    parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
-    parser.add_argument("--out", metavar="DIR", required=True, help="folder, made if it is missing")
+    parser.add_argument(
+        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=file_name, required=True, help="folder, made if it is missing"
+    )
     parser.add_argument(
         "--format", choices=("svg", "pdf", "png"), default="svg", help="file format (svg)"
     )
@@ -37,12 +43,12 @@ def run(args: argparse.Namespace) -> int:
     from icage.formats.case_json import read_case
 
     out = Path(args.out)
-    check_folder("--out", out)
     case = read_case(case_file(args.case))
+    names = [name for name in FIGURES if args.only is None or name in args.only]
+    check_folder("--out", out, [f"{name}.{args.format}" for name in names], case.sources)
 
     from experiments.paper.figures import write_figures
 
-    names = [name for name in FIGURES if args.only is None or name in args.only]
     for path, words in write_figures(case, names, out, args.format):
         print(f"{path}: {words}", flush=True)
     return 0

@@ -5,7 +5,16 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import UNITS, add_json, check_output, count, not_negative, number, positive
+from experiments.options import (
+    UNITS,
+    add_json,
+    check_output,
+    count,
+    file_name,
+    not_negative,
+    number,
+    positive,
+)
 from experiments.options import seed as seed_option
 
 if TYPE_CHECKING:
@@ -25,7 +34,10 @@ def add_parser(subparsers: Any) -> None:
         "largest cages, or list all immobilizing grasps of one given hand (--phi).",
     )
     parser.add_argument(
-        "object", metavar="OUTLINE-OR-CASE", help="drawing, case file, or a shipped object's name"
+        "object",
+        metavar="OUTLINE-OR-CASE",
+        type=file_name,
+        help="drawing, case file, or a shipped object's name",
     )
     parser.add_argument("--finger-radius", type=not_negative, help="radius of disc fingers")
     parser.add_argument("--width", type=positive, help="longer side of a drawing, in UNIT")
@@ -59,15 +71,12 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Search, plan the winners, list them."""
-    from pathlib import Path
-
     from experiments.inputs import find_object
     from experiments.json_out import write_json
     from icage.errors import InputError
 
-    path = Path(args.object)
-    check_output("--json", args.json, *([path] if path.exists() else []))
     thing = find_object(args.object, args.width, args.unit)
+    check_output("--json", args.json, *thing.sources)
     radius = thing.finger_radius if args.finger_radius is None else args.finger_radius
     if radius > thing.outline.diameter:
         raise InputError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.options import UNITS, add_json, check_output, positive
+from experiments.options import UNITS, add_json, check_output, file_name, positive
 
 
 def add_parser(subparsers: Any) -> None:
@@ -16,7 +16,7 @@ def add_parser(subparsers: Any) -> None:
         description="Turn an SVG drawing into a polygon with a stated tolerance; add a grasp to "
         "the JSON and it is a case file.",
     )
-    parser.add_argument("drawing", metavar="DRAWING", help="SVG file")
+    parser.add_argument("drawing", metavar="DRAWING", type=file_name, help="SVG file")
     parser.add_argument(
         "--width",
         type=positive,

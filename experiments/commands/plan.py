@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.options import add_json, check_output
+from experiments.options import add_json, check_output, file_name, same
 
 METHODS = ("cells", "contact-space", "both")
 
@@ -19,7 +19,9 @@ def add_parser(subparsers: Any) -> None:
         description="Compute the cage of a target grasp: sigma_0, sigma_first, sigma_max, "
         "punctures, grasps, escape path and caging regions.",
     )
-    parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
+    parser.add_argument(
+        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
+    )
     add_json(parser)
     parser.add_argument("--figure", metavar="FILE", help="draw the cage into FILE (.svg or .png)")
     parser.add_argument(
@@ -46,16 +48,15 @@ def run(args: argparse.Namespace) -> int:
     from icage.errors import InputError
     from icage.formats.case_json import read_case
 
-    path = case_file(args.case)
-    check_output("--json", args.json, path)
-    check_output("--figure", args.figure, path)
+    case = read_case(case_file(args.case))
+    check_output("--json", args.json, *case.sources)
+    check_output("--figure", args.figure, *case.sources)
     if args.figure is not None and Path(args.figure).suffix.lower() not in (".svg", ".png"):
         raise InputError(f"--figure {args.figure!r}: a name ending in .svg or .png is needed")
-    if args.figure is not None and args.json is not None and args.json == args.figure:
+    if args.figure is not None and args.json not in (None, "-") and same(args.json, args.figure):
         raise InputError(f"--json and --figure both name {args.json!r}")
     if args.no_tunnels and args.method != "contact-space":
         raise InputError("--no-tunnels goes with --method contact-space only")
-    case = read_case(path)
     from experiments.methods import planned
 
     answer = planned(case, args.method, tunnels=not args.no_tunnels)

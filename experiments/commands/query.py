@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.options import add_json, check_output
+from experiments.options import add_json, check_output, file_name
 
 
 def add_parser(subparsers: Any) -> None:
@@ -16,10 +16,13 @@ def add_parser(subparsers: Any) -> None:
         description="Ask of every placement whether closing from there can end only in the "
         "target, holds the object at all, or lets it escape.",
     )
-    parser.add_argument("case", metavar="CASE", help="case file, or a shipped object's name")
+    parser.add_argument(
+        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
+    )
     parser.add_argument(
         "placements",
         metavar="PLACEMENTS",
+        type=file_name,
         help="CSV with the header x,y,theta,sigma (theta in radians), - for standard input",
     )
     add_json(parser)
@@ -32,13 +35,15 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.inputs import case_file
     from experiments.json_out import write_json
+    from icage.errors import InputError
     from icage.formats.case_json import read_case
     from icage.formats.placements import read_placements, read_placements_stream
 
-    path = case_file(args.case)
-    check_output("--json", args.json, path, Path(args.placements))
-    case = read_case(path)
+    case = read_case(case_file(args.case))
+    check_output("--json", args.json, *case.sources, Path(args.placements))
     if args.placements == "-":
+        if sys.stdin is None:
+            raise InputError("standard input is closed; placements are needed there")
         placements = read_placements_stream(sys.stdin.buffer)
     else:
         placements = read_placements(Path(args.placements))

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import count, seed
+from experiments.options import count, file_name, seed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,9 +24,11 @@ def add_parser(subparsers: Any) -> None:
         "and judge where it ended. Exit code 0 only if every guaranteed trial ended in the target "
         "and nothing escaped.",
     )
-    parser.add_argument("case", metavar="NAME-OR-CASE", help="a shipped object, or a case file")
     parser.add_argument(
-        "--out", metavar="DIR", required=True,
+        "case", metavar="NAME-OR-CASE", type=file_name, help="a shipped object, or a case file"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=file_name, required=True,
         help="folder for replay.json, trials.parquet, regions.svg and replay.mp4",
     )  # fmt: skip
     parser.add_argument(
@@ -54,14 +56,14 @@ def run(args: argparse.Namespace) -> int:
     shipped = args.case in object_names() and not Path(args.case).is_file()
     paths = case_paths(args.case) if shipped else (case_file(args.case),)
     folder = Path(args.out)
-    check_folder("--out", folder)
     cases = [read_case(path) for path in paths]
 
     from experiments.progress import stage_bar
     from experiments.replay import replay  # only now: engine and planner take a second to load
-    from experiments.replay_files import VIDEO, regions_by_grasp, whole_folder, write_results
+    from experiments.replay_files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
     from experiments.starts import SamplingError
 
+    check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
     name = args.case if shipped else cases[0].name
     try:
         with whole_folder(folder) as staging, stage_bar() as report:

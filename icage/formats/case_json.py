@@ -31,27 +31,34 @@ UNITS: Final = ("m", "mm", "cm")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Object:
-    """An outline with its name and unit, and the radius of the fingers meant for it."""
+    """An outline with its name and unit, the radius of the fingers meant for it, and the files
+    all this was read from.
+    """
 
     name: str
     unit: Unit
     outline: Outline
     finger_radius: float
+    sources: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """An object and a target grasp: finger centres (3, 2), fingers 1, 2, 3, counterclockwise."""
+    """An object and a target grasp: finger centres (3, 2), fingers 1, 2, 3, counterclockwise.
+
+    ``sources`` are the files it was read from: the case file and, if it names one, the drawing.
+    """
 
     name: str
     unit: Unit
     outline: Outline
     finger_radius: float
     contacts: FloatArray
+    sources: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         contacts = np.array(self.contacts, dtype=np.float64)
-        check_contacts(self.outline, contacts, self.finger_radius)
+        check_contacts(self.outline, contacts, self.finger_radius, self.unit)
         object.__setattr__(self, "contacts", read_only(contacts))
 
 
@@ -64,30 +71,41 @@ def read_case(path: Path) -> Case:
         Whatever is wrong with the file, in one line that begins with its path.
     """
     with _told_with(str(path)):
-        data = parse_json(read_bytes(path, MAX_BYTES, "a case file"), "the file")
-        return parse_case(data, path.parent)
+        return parse_case(_read_json(path), path.parent, (path,))
 
 
-def parse_case(data: object, folder: Path) -> Case:
-    """The case in parsed JSON; an outline given as a file is looked for in ``folder``."""
+def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = ()) -> Case:
+    """The case in parsed JSON; an outline given as a file is looked for in ``folder``.
+
+    ``sources`` are the files that the JSON was read from.
+    """
     case = an_object(data, "the case")
-    found = parse_object(case, folder)
+    found = parse_object(case, folder, sources)
     grasp = an_object(required(case, "grasp", "the case"), "grasp")
-    contacts = points(required(grasp, "contacts", "grasp"), "grasp.contacts", most=3)
-    if len(contacts) != 3:
-        raise CaseError(f"grasp.contacts has {len(contacts)} points; 3 are needed")
+    contacts = points(required(grasp, "contacts", "grasp"), "grasp.contacts", least=3, most=3)
     with _told_with("grasp.contacts"):
-        return Case(found.name, found.unit, found.outline, found.finger_radius, contacts)
+        return Case(
+            found.name, found.unit, found.outline, found.finger_radius, contacts, found.sources
+        )
 
 
 def read_object(path: Path) -> Object:
     """The object in a case file; its grasp, if it has one, is not looked at."""
     with _told_with(str(path)):
-        data = parse_json(read_bytes(path, MAX_BYTES, "a case file"), "the file")
-        return parse_object(an_object(data, "the case"), path.parent)
+        return parse_object(an_object(_read_json(path), "the case"), path.parent, (path,))
 
 
-def parse_object(case: dict[str, Any], folder: Path) -> Object:
+def _read_json(path: Path) -> object:
+    content = read_bytes(path, MAX_BYTES, "a case file")
+    if content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        raise CaseError(
+            "this is a drawing (or other XML); a case file is needed, whose outline "
+            "`icage outline DRAWING --json FILE` makes and for which `icage grasps` finds grasps"
+        )
+    return parse_json(content, "the file")
+
+
+def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] = ()) -> Object:
     """Everything of a case but the grasp."""
     if required(case, "format", "the case") != FORMAT:
         raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed")
@@ -97,13 +115,13 @@ def parse_object(case: dict[str, Any], folder: Path) -> Object:
             f"name is {describe(name)}; a printable string of 1 to {MAX_NAME} characters is needed"
         )
     unit = parse_unit(case.get("unit", "m"))
-    outline = _parse_outline(
+    outline, drawings = _parse_outline(
         an_object(required(case, "outline", "the case"), "outline"), folder, unit
     )
     finger_radius = a_number(case.get("finger_radius", 0.0), "finger_radius")
     if finger_radius < 0.0:
         raise CaseError(f"finger_radius is {finger_radius:g}; 0 or more is needed")
-    return Object(name, unit, outline, finger_radius)
+    return Object(name, unit, outline, finger_radius, sources + drawings)
 
 
 def parse_unit(value: object) -> Unit:
@@ -113,14 +131,17 @@ def parse_unit(value: object) -> Unit:
     return value
 
 
-def _parse_outline(data: dict[str, Any], folder: Path, unit: Unit) -> Outline:
+def _parse_outline(
+    data: dict[str, Any], folder: Path, unit: Unit
+) -> tuple[Outline, tuple[Path, ...]]:
+    """The outline, and the drawing it was read from if there is one."""
     if ("vertices" in data) == ("file" in data):
         have = "both" if "vertices" in data else "neither"
         raise CaseError(f"outline has {have} of the keys 'vertices' and 'file'; one is needed")
     if "vertices" in data:
-        vertices = points(data["vertices"], "outline.vertices", MAX_VERTICES)
+        vertices = points(data["vertices"], "outline.vertices", most=MAX_VERTICES)
         with _told_with("outline.vertices"):
-            return Outline(vertices)
+            return Outline(vertices), ()
     file = data["file"]
     if not isinstance(file, str) or not file or not file.isprintable():
         raise CaseError(f"outline.file is {describe(file)}; the path of an SVG file is needed")
@@ -131,7 +152,7 @@ def _parse_outline(data: dict[str, Any], folder: Path, unit: Unit) -> Outline:
         for key in ("width", "tolerance")
     )
     with _told_with("outline"):
-        return read_svg(folder / file, width, tolerance, unit)
+        return read_svg(folder / file, width, tolerance, unit), (folder / file,)
 
 
 @contextmanager

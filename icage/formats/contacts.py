@@ -18,7 +18,9 @@ _QUADRANT = 64
 """Segments a quadrant of the offset that tells a closed pocket from the outside."""
 
 
-def check_contacts(outline: Outline, contacts: FloatArray, finger_radius: float) -> None:
+def check_contacts(
+    outline: Outline, contacts: FloatArray, finger_radius: float, unit: str = ""
+) -> None:
     """Refuse contacts that no hand with these fingers can have on this outline.
 
     Parameters
@@ -29,6 +31,8 @@ def check_contacts(outline: Outline, contacts: FloatArray, finger_radius: float)
         (3, 2) finger centres, fingers 1, 2, 3.
     finger_radius:
         [unit] r >= 0; the centres are at distance r from the outline.
+    unit:
+        What lengths are in, for the messages.
 
     Raises
     ------
@@ -39,58 +43,60 @@ def check_contacts(outline: Outline, contacts: FloatArray, finger_radius: float)
         Clockwise, collinear or coincident contacts.
     """
     limit = LARGEST_RADIUS * outline.diameter
+    unit = f" {unit}" if unit else ""
     if not 0.0 <= finger_radius <= limit:
         raise GraspError(
-            f"finger_radius is {finger_radius:g}; 0 to {limit:g} is allowed "
+            f"finger_radius is {finger_radius:g}{unit}; 0 to {limit:g}{unit} is allowed "
             f"({LARGEST_RADIUS:g} diameters of the outline)"
         )
     HandShape.from_contacts(contacts)
-    _check_sides(contacts, finger_radius)
-    _check_distances(outline, contacts, finger_radius)
+    _check_sides(contacts, finger_radius, unit)
+    _check_distances(outline, contacts, finger_radius, unit)
     if finger_radius > 0.0:
-        _check_pockets(outline, contacts, finger_radius)
+        _check_pockets(outline, contacts, finger_radius, unit)
 
 
-def _check_sides(contacts: FloatArray, r: float) -> None:
+def _check_sides(contacts: FloatArray, r: float, unit: str) -> None:
     for i, j in ((0, 1), (1, 2), (0, 2)):
         side = float(np.hypot(*(contacts[j] - contacts[i])))
         if side < 2.0 * r * (1.0 - 1e-12):
             raise GraspError(
                 f"the discs of fingers {i + 1} and {j + 1} overlap: side {i + 1}-{j + 1} is "
-                f"{side:.9g}, at least 2 x finger_radius = {2.0 * r:.9g} is needed"
+                f"{side:.9g}{unit}, at least 2 x finger_radius = {2.0 * r:.9g}{unit} is needed"
             )
 
 
-def _check_distances(outline: Outline, contacts: FloatArray, r: float) -> None:
+def _check_distances(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
     allowed = CONTACT_OFF * outline.diameter
     points = shapely.points(contacts)
     distances = np.asarray(shapely.distance(outline.polygon.exterior, points))
     inside = np.asarray(shapely.contains_properly(outline.polygon, points))
+    allowed_place = f"{_at(r, unit)} (to {allowed:.3g}{unit})"
     for k in range(3):
         distance, place = float(distances[k]), f"contact {k + 1} at {contacts[k].tolist()}"
         if inside[k] and distance > allowed:
             raise GraspError(
-                f"{place} lies inside the outline, {distance:.6g} from it; a finger centre must be "
-                f"{_at(r)} (to {allowed:.3g})"
+                f"{place} lies inside the outline, {distance:.6g}{unit} from it; "
+                f"a finger centre must be {allowed_place}"
             )
         if abs(distance - r) <= allowed:
             continue
         if distance < r:
             raise GraspError(
-                f"{place} is {distance:.9g} from the outline, nearer than finger_radius = {r:.9g}: "
-                "the disc enters the object or does not fit into the pocket there"
+                f"{place} is {distance:.9g}{unit} from the outline, nearer than finger_radius = "
+                f"{r:.9g}{unit}: the disc enters the object or does not fit into the pocket there"
             )
         raise GraspError(
-            f"{place} is {distance:.9g} from the outline; a finger centre must be "
-            f"{_at(r)} (to {allowed:.3g})"
+            f"{place} is {distance:.9g}{unit} from the outline; "
+            f"a finger centre must be {allowed_place}"
         )
 
 
-def _at(r: float) -> str:
-    return "on it" if r == 0.0 else f"finger_radius = {r:.9g} away from it"
+def _at(r: float, unit: str) -> str:
+    return "on it" if r == 0.0 else f"finger_radius = {r:.9g}{unit} away from it"
 
 
-def _check_pockets(outline: Outline, contacts: FloatArray, r: float) -> None:
+def _check_pockets(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
     """A centre inside the exterior ring of the offset stands in a pocket no disc can enter."""
     offset = outline.polygon.buffer(r, quad_segs=_QUADRANT)
     exterior = shapely.Polygon(shapely.get_exterior_ring(offset))
@@ -102,5 +108,5 @@ def _check_pockets(outline: Outline, contacts: FloatArray, r: float) -> None:
     for k in np.flatnonzero(within & (depths > chord)).tolist():
         raise GraspError(
             f"contact {k + 1} at {contacts[k].tolist()} lies in a pocket that finger_radius = "
-            f"{r:.9g} closes off: the disc cannot come in from outside"
+            f"{r:.9g}{unit} closes off: the disc cannot come in from outside"
         )

@@ -81,13 +81,14 @@ def a_number(value: object, where: str) -> float:
     return number
 
 
-def points(value: object, where: str, most: int) -> FloatArray:
-    """The value as points (k, 2), k <= ``most``: a list of pairs [x, y]."""
+def points(value: object, where: str, *, least: int = 0, most: int) -> FloatArray:
+    """The value as points (k, 2), ``least`` <= k <= ``most``: a list of pairs [x, y]."""
     if not isinstance(value, list):
         raise CaseError(f"{where} is {describe(value)}; a list of pairs [x, y] is needed")
     rows = cast("list[object]", value)
-    if len(rows) > most:
-        raise CaseError(f"{where} has {len(rows)} points; at most {most}")
+    if not least <= len(rows) <= most:
+        needed = f"{most} are needed" if least == most else f"at most {most}"
+        raise CaseError(f"{where} has {len(rows)} points; {needed}")
     found = np.empty((len(rows), 2))
     for k, row in enumerate(rows):
         if not isinstance(row, list) or len(cast("list[object]", row)) != 2:

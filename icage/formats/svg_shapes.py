@@ -11,6 +11,7 @@ import io
 import math
 from collections.abc import Iterator
 from typing import Any, Final, cast
+from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import svgelements as svg
@@ -26,6 +27,9 @@ Shape = tuple[FillRule, list[Ring]]
 MAX_CURVES: Final = 50_000
 """Lines and curves of a drawing."""
 
+_SHOWN: Final = 60
+"""Characters of a malformed attribute in the message."""
+
 _INVISIBLE: Final = ("none", "transparent")
 
 
@@ -35,10 +39,7 @@ def drawn_shapes(content: bytes) -> Iterator[Shape]:
         document = svg.SVG.parse(io.BytesIO(content), reify=False, on_error="raise")
         elements: list[Any] = list(document.elements()) if document is not None else []
     except Exception as error:  # whatever an untyped parser throws at a malformed attribute
-        reason = " ".join(str(error).split())
-        raise FormatError(
-            f"the drawing cannot be read: {reason or type(error).__name__}"
-        ) from error
+        raise FormatError(f"the drawing cannot be read: {_malformed(content)}") from error
     count = 0
     for element in elements:
         if not isinstance(element, svg.Shape) or not _is_filled(element):
@@ -50,6 +51,23 @@ def drawn_shapes(content: bytes) -> Iterator[Shape]:
         if rings:
             rule = str(cast(Any, element).values.get("fill-rule", "nonzero")).strip()
             yield ("evenodd" if rule == "evenodd" else "nonzero"), rings
+
+
+def _malformed(content: bytes) -> str:
+    """Which attribute the parser could not make sense of: its own words are no help."""
+    readers = {"d": svg.Path, "transform": svg.Matrix, "points": svg.Polygon}
+    for element in fromstring(content).iter():
+        for key, reader in readers.items():
+            value = element.get(key)
+            if value is None:
+                continue
+            try:
+                reader(value)
+            except Exception:
+                name = element.tag.rpartition("}")[2]
+                short = value if len(value) <= _SHOWN else value[:_SHOWN] + "..."
+                return f"<{name}> has a malformed {key}={short!r}"
+    return "an attribute is malformed"
 
 
 def _is_filled(shape: svg.Shape) -> bool:
@@ -111,6 +129,8 @@ def _arc(arc: Any, placed: Any, turned: Any) -> Curve:
     if arc.sweep == 0.0 or arc.rx == 0.0 or arc.ry == 0.0:
         return Bezier(np.array([placed(arc.start), placed(arc.end)]))
     rotation = float(arc.get_rotation())
+    if not math.isfinite(rotation + float(arc.sweep) + float(arc.rx) + float(arc.ry)):
+        raise FormatError("an arc of the drawing has numbers that are not finite")
     along = np.array([math.cos(rotation), math.sin(rotation)])
     across = np.array([-along[1], along[0]])
     start = float(arc.get_start_t())

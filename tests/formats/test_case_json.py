@@ -90,12 +90,12 @@ def test_every_solved_problem_is_a_case(file: Path):
         (("finger_radius",), -0.1, "finger_radius is -0.1; 0 or more"),
         (("finger_radius",), "0", 'finger_radius is "0"; a number'),
         (("finger_radius",), False, "finger_radius is false; a number"),
-        (("finger_radius",), 1e9, "finger_radius is 1e\\+09; 0 to"),
+        (("finger_radius",), 1e9, "finger_radius is 1e\\+09 mm; 0 to"),
         (("grasp",), GONE, "no key 'grasp'"),
         (("grasp",), [], "grasp is a list; an object"),
         (("grasp", "contacts"), GONE, "grasp has no key 'contacts'"),
         (("grasp", "contacts"), [[0, 0.5], [1, 0.5]], "has 2 points; 3 are needed"),
-        (("grasp", "contacts"), [[0, 0]] * 4, "has 4 points; at most 3"),
+        (("grasp", "contacts"), [[0, 0]] * 4, "has 4 points; 3 are needed"),
         (("grasp", "contacts", 1), "here", r'contacts\[1\] is "here"; a pair'),
         (("grasp", "contacts", 1, 0), {}, r"contacts\[1\]\[0\] is an object; a number"),
     ],
@@ -137,8 +137,12 @@ def test_bad_outlines_say_where(square: dict[str, Any], vertices: Any, message: 
         ([[0, 0.5], [1, 0.5], [1, 0.5]], HandError, "coincide"),
         ([[0, 0.2], [0, 0.5], [0, 0.7]], HandError, "collinear"),
         ([[0, 0.5], [1, 0.25], [0.9, 0.75]], GraspError, "contact 3 .*inside the outline, 0.1 "),
-        ([[0, 0.5], [1, 0.25], [1.25, 0.75]], GraspError, "contact 3 .*is 0.25 from the outline"),
-        ([[0, 0.5], [1.00001, 0.25], [1, 0.75]], GraspError, "contact 2 .*is 1e-05 from"),
+        (
+            [[0, 0.5], [1, 0.25], [1.25, 0.75]],
+            GraspError,
+            "contact 3 .*is 0.25 mm from the outline",
+        ),
+        ([[0, 0.5], [1.00001, 0.25], [1, 0.75]], GraspError, "contact 2 .*is 1e-05 mm from"),
     ],
 )
 def test_bad_contacts_say_which_and_how_far(
@@ -164,9 +168,9 @@ def test_disc_centres_keep_their_distance_from_the_true_outline(square: dict[str
     corner = 1 + 0.1 * math.cos(0.3), 1 + 0.1 * math.sin(0.3)  # on the arc round (1, 1)
     disc_case(square, 0.1, [[-0.1, 0.5], [1.1, 0.25], corner])
     short = 1 + 0.0999 * math.cos(0.3), 1 + 0.0999 * math.sin(0.3)
-    with pytest.raises(GraspError, match=r"contact 3 .*0\.0999 from the outline, nearer than"):
+    with pytest.raises(GraspError, match=r"contact 3 .*0\.0999 mm from the outline, nearer than"):
         disc_case(square, 0.1, [[-0.1, 0.5], [1.1, 0.25], short])
-    with pytest.raises(GraspError, match="must be finger_radius = 0.1 away"):
+    with pytest.raises(GraspError, match="must be finger_radius = 0.1 mm away"):
         disc_case(square, 0.1, [[-0.2, 0.5], [1.1, 0.25], corner])
     with pytest.raises(GraspError, match="contact 1 .*lies inside the outline"):
         disc_case(square, 0.1, [[0.1, 0.5], [1.1, 0.25], corner])
@@ -185,7 +189,9 @@ POCKET = [[0, 0], [10, 0], [10, 10], [5.5, 10], [5.5, 9], [8, 9], [8, 4], [2, 4]
 def test_a_radius_that_closes_the_pocket_of_a_contact(square: dict[str, Any]):
     square["outline"]["vertices"] = [*POCKET, [4.5, 10], [0, 10]]
     centres = [[10.8, 5.0], [5.0, 4.8], [10.8, 6.0]]
-    with pytest.raises(GraspError, match="contact 2 .*pocket that finger_radius = 0.8 closes off"):
+    with pytest.raises(
+        GraspError, match="contact 2 .*pocket that finger_radius = 0.8 mm closes off"
+    ):
         disc_case(square, 0.8, [[-0.8, 5.0], centres[1], [10.8, 6.0]])
     # Through the neck: half a unit is too wide by a hair, 0.49 is not.
     disc_case(square, 0.49, [[-0.49, 5.0], [5.0, 4.49], [10.49, 6.0]])
@@ -204,7 +210,9 @@ def test_an_outline_from_a_drawing(square: dict[str, Any], tmp_path: Path):
     square["grasp"]["contacts"] = [[0, 0.5], [2, 0.25], [2, 0.75]]
     file = tmp_path / "case.json"
     file.write_text(json.dumps(square))
-    assert read_case(file).outline.polygon.bounds == (0, 0, 2, 1)
+    case = read_case(file)
+    assert case.outline.polygon.bounds == (0, 0, 2, 1)
+    assert case.sources == read_object(file).sources == (file, tmp_path / "box.svg")
 
 
 @pytest.mark.parametrize(
