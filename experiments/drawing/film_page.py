@@ -87,19 +87,21 @@ def _sigma_plot(cage: Cage, clip: Clip) -> Plot:
     sigma = clip.placements[:, 3]
     levels = [Level(cage.sigma_0, r"$\sigma_0$", QUIET_INK)]
     if cage.sigma_first is not None:
-        levels.append(Level(cage.sigma_first, r"$\sigma_{\mathrm{first}}$"))
+        same = cage.sigma_first == cage.sigma_max
+        name = r"$\sigma_{\mathrm{first}},\sigma_{\mathrm{max}}$" if same else None
+        levels.append(Level(cage.sigma_first, name or r"$\sigma_{\mathrm{first}}$"))
     if cage.sigma_max is not None and cage.sigma_max != cage.sigma_first:
         levels.append(Level(cage.sigma_max, r"$\sigma_{\mathrm{max}}$"))
     values = [*sigma, *(level.value for level in levels)]
     low, high = min(values), max(values)
     room = 0.08 * (high - low)
-    return Plot(_SIGMA, r"opening $\sigma$", 1.0, (low - room, high + room), levels)
+    return Plot(_SIGMA, r"opening $\sigma$ over time", 1.0, (low - room, high + room), levels)
 
 
 def _force_plot(clip: Clip) -> Plot:
     """Impacts may leave the plot; what counts is how the hand presses in the end."""
     high = 1.25 * max(float(np.quantile(clip.forces, 0.97)), float(clip.forces[-1].max()), 1e-9)
-    return Plot(_FORCE, "finger forces", 1.0, (0.0, high))
+    return Plot(_FORCE, "finger forces over time", 1.0, (0.0, high))
 
 
 def _draw_badge(canvas: Canvas, clip: Clip) -> None:
@@ -135,7 +137,7 @@ def _draw_caption(canvas: Canvas, run: Run) -> None:
         )
         if level is not None
     ]
-    shades = "shaded: where each finger's centre may be without the object escaping"
+    shades = "shaded: where each finger's centre may be in the cage;   orange: the target grasp"
     canvas.text(24.0, 704.0, ",   ".join([*levels, shades]), 16.0, QUIET_INK, math=True)
 
 
