@@ -20,6 +20,7 @@ from typing import Any, NoReturn, TextIO
 import experiments.commands
 import icage
 from icage.errors import InputError
+from icage.kernels.compiling import when_compiling
 
 _LONGEST = 800
 """Characters of an error line; a file name may be longer than anyone reads."""
@@ -52,7 +53,7 @@ def parser() -> Parser:
     for module in pkgutil.iter_modules(experiments.commands.__path__):
         command = import_module(f"experiments.commands.{module.name}")
         command.add_parser(commands)
-        commands.choices[module.name].set_defaults(run=command.run)
+        commands.choices[module.name.replace("_", "-")].set_defaults(run=command.run)
     return top
 
 
@@ -61,6 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     heard = _open_streams()
     try:
         args = parser().parse_args(arguments)
+        when_compiling(_say_compiling)
         code: int = args.run(args)
         sys.stdout.flush()
     except InputError as error:
@@ -105,6 +107,13 @@ def _nowhere() -> TextIO:
 def _forget_output() -> None:
     """Keep the interpreter from complaining, as it ends, about what standard output holds back."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _say_compiling() -> None:
+    """For whoever sits before it; a log or a script is not told what is no result."""
+    if sys.stderr.isatty():
+        line = "icage: compiling the planner, once per installation, about a minute"
+        print(line, file=sys.stderr, flush=True)
 
 
 def _say(message: str) -> None:

@@ -7,10 +7,11 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from icage.kernels.compiled import kernel_digest
+from icage.kernels.compiled import TOOLS, compiled, kernel_digest
 from icage.kernels.search import explore
 
 SCRIPT = """
@@ -34,6 +35,8 @@ def answer(**environment: str) -> str:
 def test_a_change_in_any_kernel_makes_every_cached_one_stale() -> None:
     cache = explore._cache  # type: ignore[attr-defined]
     assert cache._cache_file._source_stamp == kernel_digest()
+    assert cache._cache_file._index_name.endswith(f".{TOOLS}.nbi")
+    assert TOOLS in cache._cache_file._data_name(1)
 
 
 def test_stale_machine_code_is_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,6 +59,51 @@ def test_stale_machine_code_is_not_loaded(tmp_path: Path, monkeypatch: pytest.Mo
         return sum(dispatcher.stats.cache_hits.values())
 
     assert [hits("first"), hits("first"), hits("second")] == [0, 1, 0]
+
+
+ONE_KERNEL = """
+import sys
+import llvmlite, numba  # numba first looks which llvmlite it has
+llvmlite.__version__ = sys.argv[1]
+from icage.kernels.compiled import compiled
+from icage.kernels.compiling import when_compiling
+from one_for_the_cache import one
+when_compiling(lambda: print("compiling"))
+one = compiled(one)
+print(one(1), one(1.0))
+"""
+
+
+def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) -> None:
+    """And whoever asked is told of a compilation, once, and only where nothing is cached."""
+    (tmp_path / "one_for_the_cache.py").write_text("def one(x):\n    return x + 1\n")
+    (tmp_path / "cache").mkdir()
+    root = str(Path(__file__).parents[2])
+    path = {
+        "PYTHONPATH": os.pathsep.join([root, str(tmp_path)]),
+        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+    }
+
+    def told(version: str) -> bool:
+        done = subprocess.run(
+            [sys.executable, "-c", ONE_KERNEL, version], check=True, capture_output=True, text=True,
+            cwd=tmp_path, env={**os.environ, **path},
+        )  # fmt: skip
+        words = done.stdout.split()
+        assert words[-2:] == ["2", "2.0"]
+        assert words[:-2] in ([], ["compiling"])
+        return words[:-2] != []
+
+    assert [told(version) for version in ("A", "A", "B", "A", "B")] == [1, 0, 1, 0, 0]
+    names = [file.name for file in (tmp_path / "cache").glob("*/*.nbi")]
+    assert sorted(name[-6:] for name in names) == ["eA.nbi", "eB.nbi"]
+
+
+def test_no_place_for_a_cache_is_no_error() -> None:
+    """numba finds none for a function that has no file."""
+    scope: dict[str, Any] = {}
+    exec("def one(x):\n    return x + 1\n", scope)
+    assert compiled(scope["one"])(1) == 2
 
 
 @pytest.mark.slow
