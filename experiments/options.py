@@ -50,6 +50,11 @@ def seed(text: str) -> int:
     return _whole(text, 0, 2**63 - 1)
 
 
+def row_index(text: str) -> int:
+    """The number of a row of a table, from 0."""
+    return _whole(text, 0, 10_000_000)
+
+
 def _whole(text: str, low: int, high: int) -> int:
     if not (text.isascii() and text.isdigit() and len(text) <= 20 and low <= int(text) <= high):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")

@@ -8,7 +8,7 @@ grasp that the planner knows.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -189,6 +189,8 @@ def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
         "plan": plan_document,
         "contact_space": _second_document(run),
         "unit": run.case.unit,
+        "outline": {"vertices": run.case.outline.vertices},
+        "config": asdict(run.scene.config),
         "diameter": size,
         "trials": len(run.closings),
         **run.counts,

@@ -32,9 +32,10 @@ def test_the_python_of_the_readme_runs():
 
 
 def test_every_command_shown_exists_and_every_command_is_shown():
-    commands = {module.name for module in pkgutil.iter_modules(experiments.commands.__path__)}
-    assert set(re.findall(r"^## `icage (\w+)", FORMATS, re.MULTILINE)) >= commands
-    assert set(re.findall(r"^    icage (\w+)", README, re.MULTILINE)) <= commands
+    modules = pkgutil.iter_modules(experiments.commands.__path__)
+    commands = {module.name.replace("_", "-") for module in modules}
+    assert set(re.findall(r"^## `icage ([\w-]+)", FORMATS, re.MULTILINE)) >= commands
+    assert set(re.findall(r"^    icage ([\w-]+)", README, re.MULTILINE)) <= commands
 
 
 def test_links_of_the_readme_lead_somewhere():

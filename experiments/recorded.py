@@ -1,0 +1,243 @@
+"""A recorded trial: read back from the folder of a replay and closed once more.
+
+A row of ``trials.parquet`` has the start, ``replay.json`` the object, the hand and the settings of
+its run, in doubles that read back as the same bits. So on the same versions and the same kind of
+machine a trial repeats to the last bit, alone or among a thousand.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import shapely
+
+from experiments.versions import versions
+from icage.cage import Cage, GraspMinimum
+from icage.errors import InputError
+from icage.hand import HandShape, Placement
+from icage.outline import Outline
+from icage.regions import FingerRegion
+from sim.batch import close_many
+from sim.config import SimConfig
+from sim.judge import OUTCOMES, Verdicts, judge
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+
+JSON, TRIALS = "replay.json", "trials.parquet"
+
+_POSE = ("x", "y", "theta", "sigma")
+
+_LARGEST: Final = 1_000_000_000
+"""[byte] Largest file read."""
+
+
+class RecordingError(InputError):
+    """A folder does not hold a recorded replay that can be run again."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedTrial:
+    """One row of a replay, with everything needed to close it again.
+
+    Attributes
+    ----------
+    index:
+        Row in the whole table.
+    row:
+        The table's columns; None where a diverged closing left no number.
+    run:
+        The run's document in ``replay.json``.
+    recorded_versions:
+        Versions that recorded it.
+    """
+
+    index: int
+    row: dict[str, Any]
+    run: dict[str, Any]
+    recorded_versions: dict[str, str]
+    outline: Outline
+    hand: HandShape
+    config: SimConfig
+
+    @property
+    def start(self) -> Placement:
+        """Where the hand stood."""
+        return Placement(*(self.row[f"start_{name}"] for name in _POSE))
+
+    @property
+    def scene(self) -> Scene:
+        """Object and hand, compiled afresh."""
+        return Scene(self.outline, self.hand, self.run["plan"]["finger_radius"], self.config)
+
+    @property
+    def grasps(self) -> tuple[GraspMinimum, ...]:
+        """The grasps of the recorded plan, the target first."""
+        sigma_0 = float(self.run["plan"]["sigma_0"])
+        return tuple(_grasp(grasp, sigma_0) for grasp in self.run["plan"]["grasps"])
+
+    @property
+    def other_versions(self) -> dict[str, tuple[str, str]]:
+        """Name to (recorded, here) of the versions that differ."""
+        now = versions()
+        names = sorted({*now, *self.recorded_versions})
+        pairs = {n: (self.recorded_versions.get(n, "none"), now.get(n, "none")) for n in names}
+        return {n: pair for n, pair in pairs.items() if pair[0] != pair[1]}
+
+
+@dataclass(frozen=True, slots=True)
+class Rerun:
+    """A recorded trial, closed again; ``differences`` are (what, recorded, now)."""
+
+    trial: RecordedTrial
+    scene: Scene
+    closings: ClosingOutcomes
+    verdicts: Verdicts
+    differences: tuple[tuple[str, Any, Any], ...]
+
+    @property
+    def identical(self) -> bool:
+        """Whether everything recorded came out again, bit for bit."""
+        return not self.differences
+
+
+def read_trial(folder: Path, index: int) -> RecordedTrial:
+    """Row ``index`` (0-based, over all runs) of the replay in a folder.
+
+    Raises
+    ------
+    RecordingError:
+        No replay is there, it was recorded before outlines were kept, or it has no such row.
+    """
+    document = _document(folder / JSON)
+    table = _table(folder / TRIALS)
+    if not 0 <= index < table.num_rows:
+        raise RecordingError(
+            f"{str(folder)!r} has no trial {index}; it has {table.num_rows}, counted from 0"
+        )
+    row: dict[str, Any] = table.slice(index, 1).to_pylist()[0]
+    try:
+        run = document["runs"][row["run"]]
+        if "outline" not in run or "config" not in run:
+            raise RecordingError(
+                f"{str(folder / JSON)!r} was recorded before outline and settings were kept in it; "
+                "replay the case once more"
+            )
+        config = SimConfig(**{**run["config"], "solimp": tuple(run["config"]["solimp"])})
+        x, y = run["plan"]["hand"]["unit_fingers"][2]
+        return RecordedTrial(
+            index, row, run, dict(document["versions"]),
+            Outline(run["outline"]["vertices"]), HandShape(complex(x, y)), config,
+        )  # fmt: skip
+    except (KeyError, IndexError, TypeError, ValueError) as error:
+        raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error
+
+
+def rerun(trial: RecordedTrial) -> Rerun:
+    """Close and judge the trial again, and compare with what was recorded."""
+    scene = trial.scene
+    closings = close_many(scene, trial.start.as_array()[None, :], threads=1)
+    friction = trial.config.friction > 0.0
+    verdicts = judge(closings, trial.grasps, trial.outline, friction=friction)
+    return Rerun(trial, scene, closings, verdicts, tuple(_differences(trial, closings, verdicts)))
+
+
+def _differences(
+    trial: RecordedTrial, closings: ClosingOutcomes, verdicts: Verdicts
+) -> Iterator[tuple[str, Any, Any]]:
+    """What is not the same to the last bit."""
+    row, size = trial.row, trial.outline.diameter
+    outcome = OUTCOMES[int(verdicts.outcome[0])]
+    now: dict[str, Any] = {
+        "outcome": outcome,
+        "grasp_id": int(verdicts.grasp_id[0]),
+        "steps": int(closings.steps[0]),
+    }
+    if outcome != "diverged":  # what a diverged closing leaves means nothing
+        now |= {f"end_{n}": float(v) for n, v in zip(_POSE, closings.end[0], strict=True)}
+        now |= {
+            "position_error": float(verdicts.position_error[0] * size),
+            "angle_error": float(verdicts.angle_error[0]),
+            "penetration_max": float(closings.penetration_max[0] * size),
+            "penetration_rest": float(closings.penetration_rest[0] * size),
+        }
+    for name, value in now.items():
+        if row[name] != value:
+            yield name, row[name], value
+
+
+def recorded_cage(trial: RecordedTrial) -> Cage:
+    """The recorded answer as a ``Cage`` for drawing; it answers no queries."""
+    plan = trial.run["plan"]
+    return Cage(
+        outline=trial.outline,
+        hand=trial.hand,
+        finger_radius=plan["finger_radius"],
+        contacts=np.array(plan["contacts"]),
+        verdict=plan["verdict"],
+        why=plan.get("why"),
+        sigma_0=plan["sigma_0"],
+        sigma_first=plan["sigma_first"],
+        sigma_max=plan["sigma_max"],
+        grasps=trial.grasps,
+    )
+
+
+def recorded_regions(trial: RecordedTrial) -> tuple[FingerRegion, ...]:
+    """The caging regions kept with the plan."""
+    plan = trial.run["plan"]
+    return tuple(
+        FingerRegion(
+            region["finger"],
+            region["level"],
+            math.inf if plan["sigma_max"] is None else plan["sigma_max"],
+            region["bound"],
+            region["area_gap"],
+            shapely.MultiPolygon([(p["outer"], p["holes"]) for p in region["polygons"]]),
+        )
+        for region in plan["regions"]
+    )
+
+
+def _grasp(grasp: dict[str, Any], sigma_0: float) -> GraspMinimum:
+    ends = grasp.get("plateau")
+    return GraspMinimum(
+        id=grasp["id"],
+        target=grasp["target"],
+        sigma=grasp["sigma_0"],
+        contacts=np.array(grasp["contacts"]),
+        plateau=None if ends is None else (np.array(ends[0]), np.array(ends[1])),
+        free_fingers=tuple(grasp["free_fingers"]),
+        joined_at=sigma_0,
+    )
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise RecordingError(f"{str(path)!r} is larger than {_LARGEST} bytes")
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RecordingError(f"{str(path)!r} cannot be read: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise RecordingError(f"{str(path)!r} is not JSON: {error}") from error
+    found = document.get("format") if isinstance(document, dict) else None
+    if found != "icage-replay/1":
+        raise RecordingError(f"{str(path)!r} has format {found!r}; 'icage-replay/1' is needed")
+    return document
+
+
+def _table(path: Path) -> pa.Table:
+    try:
+        return pq.read_table(path)
+    except OSError as error:
+        raise RecordingError(f"{str(path)!r} cannot be read: {error.strerror or error}") from error
+    except pa.ArrowException as error:
+        raise RecordingError(f"{str(path)!r} is not a table of trials: {error}") from error

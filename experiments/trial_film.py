@@ -1,0 +1,29 @@
+"""The film of one recorded trial: the replay's film with a single clip."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from experiments.progress import stage_bar
+from experiments.recorded import Rerun, recorded_cage, recorded_regions
+from experiments.replay import Replay, Run
+from experiments.starts import Starts
+from experiments.video import film
+from experiments.whole_files import whole_file
+from icage.formats.case_json import Case
+
+
+def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:
+    """Write the film; ``camera`` as in ``experiments.video.film``.
+
+    Unlike the closing that is compared, the film also simulates the free travel before the first
+    touch: its last frame may differ from the record by rounding, about 1e-9 of the diameter.
+    """
+    trial, row = done.trial, done.trial.row
+    cage = recorded_cage(trial)
+    case = Case(row["grasp"], trial.run["unit"], trial.outline, cage.finger_radius, cage.contacts)
+    starts = Starts(done.closings.start, 1)
+    run = Run(case, cage, cage, done.scene, row["set"], starts, done.closings, done.verdicts)
+    with stage_bar() as report, whole_file(path) as part:
+        replay = Replay((run,), row["seed"])
+        film(replay, case.name, {case.name: recorded_regions(trial)}, part, report, camera)
