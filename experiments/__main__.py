@@ -10,7 +10,7 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution
 
-from experiments.environment import environment
+from experiments.environment import environment, run_in
 
 
 def _installed() -> bool:
@@ -27,10 +27,8 @@ if __name__ == "__main__":
 
         sys.exit(main())
     try:
-        python = environment(".venv")
-        done = subprocess.run([str(python), "-m", "experiments", *sys.argv[1:]], check=False)
+        sys.exit(run_in(environment(".venv"), "-m", "experiments", *sys.argv[1:]))
     except subprocess.CalledProcessError as error:
         sys.exit(f"icage: error: the environment could not be made (pip exit {error.returncode})")
     except KeyboardInterrupt:
         sys.exit(130)
-    sys.exit(done.returncode)

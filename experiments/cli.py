@@ -69,12 +69,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say(str(error))
         return 2
     except KeyboardInterrupt:
-        _say("interrupted")
-        return 130
+        return _interrupted()
     except BrokenPipeError:
         _forget_output()
         return 1
     except Exception as error:
+        if isinstance(error, SystemError) and _is_interrupt(error):
+            return _interrupted()
         if isinstance(error, OSError) and error.errno in _NO_ROOM:
             _say(f"{error.filename or 'the answer'} cannot be written: {error.strerror}")
             _forget_output()
@@ -107,6 +108,18 @@ def _nowhere() -> TextIO:
 def _forget_output() -> None:
     """Keep the interpreter from complaining, as it ends, about what standard output holds back."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _is_interrupt(error: BaseException | None) -> bool:
+    """Whether an interrupt is behind it: inside a compiled function it becomes a SystemError."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
+def _interrupted() -> int:
+    _say("interrupted")
+    return 130
 
 
 def _say_compiling() -> None:

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tomllib
 import venv
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -54,6 +55,23 @@ def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
     subprocess.run([*_pip(python), "install", "--quiet", *target], check=True, cwd=ROOT)
     stamp.write_text(f"{digest} {extras}", encoding="utf-8")
     return python
+
+
+def run_in(python: Path, *arguments: str) -> int:
+    """Run Python with these arguments and return its exit code, as if it were this process.
+
+    On an interrupt, which a terminal sends to both, the child is left to tidy up (a second one
+    ends it): subprocess.run would kill it a quarter of a second later.
+    """
+    child = subprocess.Popen([str(python), *arguments])
+    try:
+        return child.wait()
+    except KeyboardInterrupt:
+        with suppress(KeyboardInterrupt):
+            child.wait()
+        return 130
+    finally:
+        child.kill()  # does nothing to one that has ended
 
 
 def lower_bounds() -> str:

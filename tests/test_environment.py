@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
-from experiments.environment import ROOT, _pip, environment, lower_bounds
+import pytest
+
+from experiments.environment import ROOT, _pip, environment, lower_bounds, run_in
 
 
 def test_lower_bounds_are_those_declared():
@@ -58,3 +65,43 @@ def test_an_environment_without_pip_is_served_by_this_pip(tmp_path: Path):
     venv.create(tmp_path / "bare", with_pip=False)
     python = tmp_path / "bare/bin/python"
     assert _pip(python)[-2:] == ["--python", str(python)]
+
+
+TIDY = """
+import sys, time
+try:
+    print("started", flush=True)
+    time.sleep(60)
+except KeyboardInterrupt:
+    time.sleep(1.0)  # longer than subprocess.run would wait
+    print("tidied", flush=True)
+    sys.exit(130)
+"""
+
+RUN_IN = f"""
+import sys
+from pathlib import Path
+from experiments.environment import run_in
+sys.exit(run_in(Path(sys.executable), "-c", {TIDY!r}))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+@pytest.mark.parametrize(("interrupts", "words"), [(1, "tidied\n"), (2, "")])
+def test_an_interrupted_command_may_tidy_up(interrupts: int, words: str):
+    command = subprocess.Popen(
+        [sys.executable, "-c", RUN_IN], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+        text=True, cwd=ROOT, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
+    assert command.stdout is not None
+    assert command.stdout.readline() == "started\n"
+    for _ in range(interrupts):
+        os.killpg(command.pid, signal.SIGINT)  # as a terminal does
+        time.sleep(0.3)
+    out, _ = command.communicate(timeout=30)
+    assert (command.returncode, out) == (130, words)
+
+
+def test_the_exit_code_is_handed_on():
+    assert run_in(Path(sys.executable), "-c", "raise SystemExit(2)") == 2

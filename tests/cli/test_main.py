@@ -37,14 +37,15 @@ def test_help_loads_nothing_heavy():
 def test_help_names_every_command():
     done = subprocess.run([*ICAGE, "--help"], capture_output=True, text=True, check=True)
     for module in pkgutil.iter_modules(experiments.commands.__path__):
-        assert f"  {module.name} " in done.stdout
+        assert module.name.replace("_", "-") in done.stdout.split()
 
 
 def test_every_command_has_help(capsys: Any):
     for module in pkgutil.iter_modules(experiments.commands.__path__):
-        result = here(capsys, module.name, "--help")
+        name = module.name.replace("_", "-")
+        result = here(capsys, name, "--help")
         assert result.code == 0
-        assert result.out.startswith(f"usage: icage {module.name}")
+        assert result.out.startswith(f"usage: icage {name}")
 
 
 def test_the_version(capsys: Any):
@@ -65,6 +66,15 @@ def test_our_own_fault_is_exit_1_with_one_line(monkeypatch: Any, capsys: Any):
     assert result.err.count("\n") == 1
     assert "ZeroDivisionError: x y" in result.err
     assert "ICAGE_DEBUG=1" in result.err
+
+
+def test_an_interrupt_inside_a_compiled_function_is_one(monkeypatch: Any, capsys: Any):
+    error = SystemError("<built-in function> returned a result with an exception set")
+    error.__cause__ = SystemError("another compiled function between")
+    error.__cause__.__context__ = KeyboardInterrupt()
+    monkeypatch.setattr("experiments.commands.plan.run", raising(error))
+    result = here(capsys, "plan", CASE)
+    assert (result.code, result.out, result.err) == (130, "", "icage: error: interrupted\n")
 
 
 def test_a_traceback_for_those_who_ask(monkeypatch: Any):
