@@ -1,0 +1,53 @@
+"""``icage shake CASE``: after closing, is the object held?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from experiments.options import add_json, check_output, file_name, seed
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    parser = subparsers.add_parser(
+        "shake",
+        help="whether the closed hand holds the object: pushes, form closure, play",
+        description="Close the simulated hand into the target grasp, lock the fingers, push the "
+        "object in 8 directions and turn it both ways, shake it, test the contacts for form "
+        "closure, and measure the play of a grasp on three edges. Point fingers become discs of "
+        "2 % of the diameter. Exit code 1 if the object is not held or a check failed.",
+    )
+    parser.add_argument(
+        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
+    )
+    add_json(parser)
+    parser.add_argument("--seed", metavar="S", type=seed, default=0, help="default 0")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Close, lock, push, measure; 1 if anything did not hold."""
+    import sys
+
+    from experiments.inputs import find_case
+    from experiments.json_out import write_json
+
+    case = find_case(args.case)
+    check_output("--json", args.json, *case.sources)
+
+    from experiments.disc_case import physical_case  # only now: the planner takes time to load
+    from experiments.shake import ShakeError, shake_case
+    from experiments.shake_json import shake_document, shake_summary
+
+    try:
+        done = shake_case(physical_case(case), args.seed)
+    except ShakeError as error:
+        print(f"icage: shake failed: {error}", file=sys.stderr)
+        return 1
+    if args.json is not None:
+        write_json(shake_document(done), args.json)
+    if args.json != "-":
+        print("\n".join(shake_summary(done)))
+    for sentence in done.failures:
+        print(f"icage: shake failed: {sentence}", file=sys.stderr)
+    return 1 if done.failures else 0
