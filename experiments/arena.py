@@ -1,0 +1,72 @@
+"""Where a cage is attacked: scene, held hand, starts and the plan's way out, for any opening."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from icage.cage import Cage
+from icage.formats.case_json import Case
+from sim.attack import Attacks, attack
+from sim.config import SimConfig
+from sim.engine import MjModel
+from sim.guided_attack import GuidedDriver, object_path
+from sim.held_hand import held_model
+from sim.random_attack import RandomDriver
+from sim.scene import Scene
+
+TIME_STEP: Final = 1e-3
+"""[s] As for closings: the penetration, a false opening, is about speed (0.5 / s) times this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arena:
+    """Everything that the attacks on one cage share.
+
+    Attributes
+    ----------
+    target, door:
+        (6,) positions: the target, and where the plan's way out is as wide as the level below.
+    path:
+        (p, 5) way points of ``object_path``; None for a cage without escape.
+    threads:
+        0 for one per core; results are the same for any number.
+    """
+
+    scene: Scene
+    model: MjModel
+    target: FloatArray
+    door: FloatArray
+    path: FloatArray | None
+    threads: int
+
+    @classmethod
+    def of(cls, case: Case, cage: Cage, below: float, threads: int) -> Arena:
+        """The arena of a cage; ``below`` [unit] is the level below sigma_max."""
+        config = SimConfig(time_step=TIME_STEP)
+        scene = Scene(case.outline, cage.hand, case.finger_radius, config)
+        target = scene.start_positions(cage.target_placement.as_array())[0]
+        if cage.escape_path is None:
+            return cls(scene, held_model(scene), target, target, None, threads)
+        path = object_path(scene, cage.escape_path)
+        wide = path[:, 3] >= min(below / scene.thing.unit, float(path[:, 3].max()))
+        way = path[max(int(wide.argmax()) - 1, 0)]
+        door = np.concatenate([way[3] * scene.kinematics.lengths, way[:3]])
+        return cls(scene, held_model(scene), target, door, path, threads)
+
+    def random(self, openings: FloatArray, rng: np.random.Generator) -> Attacks:
+        """Random attacks at openings (N,) [diameter]: from the target and from the door in turn."""
+        starts = np.where(np.arange(len(openings))[:, None] % 2 == 0, self.target, self.door)
+        starts[self.scene.sigma(starts) > openings] = self.target
+        driver = RandomDriver(self.scene, openings, rng)
+        return attack(self.scene, self.model, starts, openings, driver, self.threads)
+
+    def guided(self, openings: FloatArray, rng: np.random.Generator) -> Attacks:
+        """Attacks along the plan's way out at openings (N,) [diameter], from the target."""
+        path = np.zeros((0, 5)) if self.path is None else self.path
+        driver = GuidedDriver(self.scene, openings, path, rng)
+        starts = np.repeat(self.target[None, :], len(openings), axis=0)
+        return attack(self.scene, self.model, starts, openings, driver, self.threads)

@@ -1,0 +1,203 @@
+"""Can the object be taken out of the cage? The plan's sigma_max attacked in physics, and measured.
+
+Below sigma_max no attack may succeed; a little above it the plan's own way out must work. The
+levels are at(S, -) = S - min(0.002 S, 0.1 (S - sigma_0)) and at(S, +) likewise above; with discs S
+is the safe end of the planner's bracket below, its upper end above.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+import numpy as np
+
+from experiments.arena import Arena
+from experiments.derived import DerivedError, derived_case
+from icage.cage import Cage
+from icage.formats.case_json import Case
+from icage.planner import plan
+from sim.attack import Attacks
+from sim.measure import Measured, measure
+
+THINNEST: Final = 20.0
+"""[penetration] A cage with less room above sigma_0 than this is no case for physics."""
+
+NEAR: Final = 0.002
+"""[1] at(S, -) and at(S, +) are this share of S away, and what guided attacks measure is within."""
+
+SURE: Final = 0.95
+"""[1] Share of guided attacks above sigma_max that must escape."""
+
+Verdict = Literal["ok", "failed", "too_thin_for_physics", "no_derived_case"]
+Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Assault:
+    """One attacker: its attacks below and above (None: there is no above), and its interval."""
+
+    attacker: str
+    below: Attacks
+    above: Attacks | None = None
+    measured: Measured | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Escape:
+    """A case under attack; levels in its unit.
+
+    Attributes
+    ----------
+    case, cage:
+        Of the derived case, if ``derived``.
+    arena:
+        None if nothing was attacked.
+    below, above:
+        The two levels; None where there is none.
+    failures:
+        What did not hold, a plain sentence each.
+    """
+
+    case: Case
+    derived: bool
+    cage: Cage
+    attacks: int
+    seed: int
+    verdict: Verdict = "ok"
+    why: str | None = None
+    arena: Arena | None = None
+    below: float | None = None
+    above: float | None = None
+    assaults: tuple[Assault, ...] = ()
+    failures: tuple[str, ...] = ()
+
+    @property
+    def penetration_max(self) -> float:
+        """[diameter] Deepest finger in the attacks at both levels."""
+        runs = [run for a in self.assaults for run in (a.below, a.above) if run is not None]
+        return max((float(run.penetration_max.max()) for run in runs), default=0.0)
+
+
+def at(level: float, sigma_0: float, sign: int) -> float:
+    """S -+ min(0.002 S, 0.1 (S - sigma_0)).
+
+    >>> at(2.0, 1.0, -1), round(at(1.01, 1.0, 1), 6)
+    (1.996, 1.011)
+    """
+    return level + sign * min(NEAR * level, 0.1 * (level - sigma_0))
+
+
+def wilson_upper(successes: int, trials: int) -> float:
+    """Upper end of Wilson's one-sided 95 % bound on a rate.
+
+    >>> round(wilson_upper(0, 200), 4), wilson_upper(0, 0)
+    (0.0133, 1.0)
+    """
+    if trials == 0:
+        return 1.0
+    z = 1.6448536269514722
+    rate = successes / trials
+    middle = rate + z * z / (2.0 * trials)
+    half = z * math.sqrt(rate * (1.0 - rate) / trials + z * z / (4.0 * trials * trials))
+    return min(1.0, (middle + half) / (1.0 + z * z / trials))
+
+
+def escape(case: Case, attacks: int, seed: int, threads: int, report: Report) -> Escape:
+    """Plan one case, derive discs for point fingers, attack and measure.
+
+    The same for any number of threads: every attack has random numbers of its own.
+    """
+    rng = np.random.default_rng([seed, 4])
+    for_derived, for_attacks = rng.spawn(2)
+    derived = not case.finger_radius > 0.0
+    report("planning", 0, 1)
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    blank = Escape(case, False, cage, attacks, seed)
+    if cage.verdict == "not_a_cage":
+        return replace(blank, why=f"not_a_cage ({cage.why}): nothing to attack")
+    if derived:
+        try:
+            case = derived_case(case, for_derived)
+        except DerivedError as error:
+            return replace(blank, verdict="no_derived_case", why=str(error))
+        cage = plan(case.outline, case.contacts, case.finger_radius)
+        blank = Escape(case, True, cage, attacks, seed)
+        if cage.verdict == "not_a_cage":
+            why = f"the derived case is not_a_cage ({cage.why})"
+            return replace(blank, verdict="no_derived_case", why=why)
+    report("planning", 1, 1)
+    return judged(_attacked(blank, for_attacks, threads, report))
+
+
+def _attacked(blank: Escape, rng: np.random.Generator, threads: int, report: Report) -> Escape:
+    """All attacks on a planned case."""
+    case, cage, attacks = blank.case, blank.cage, blank.attacks
+    unit = case.outline.diameter
+    streams = rng.spawn(6)
+    if cage.sigma_max is None:
+        below = cage.sigma_largest or cage.sigma_0
+        arena = Arena.of(case, cage, below, threads)
+        report("attacks", 0, 1)
+        only = Assault("random", arena.random(np.full(attacks, below / unit), streams[0]))
+        report("attacks", 1, 1)
+        return replace(blank, arena=arena, below=below, assaults=(only,))
+    upper = cage.sigma_max_upper or cage.sigma_max
+    below, above = at(cage.sigma_max, cage.sigma_0, -1), at(upper, cage.sigma_0, 1)
+    arena = Arena.of(case, cage, below, threads)
+    room = min(0.05 * upper, 0.5 * (upper - cage.sigma_0))
+    window = ((cage.sigma_max - room) / unit, (upper + room) / unit)
+    assaults: list[Assault] = []
+    for k, (name, attack_at, rounds, repeats) in enumerate(
+        (("random", arena.random, 2, max(4, attacks // 4)), ("guided", arena.guided, 4, 3))
+    ):
+        runs: list[Attacks] = []
+        for level in (below, above):
+            report("attacks", 3 * k + len(runs), 6)
+            runs.append(attack_at(np.full(attacks, level / unit), streams[3 * k + len(runs)]))
+        report("attacks", 3 * k + 2, 6)
+        found = measure(
+            attack_at, window, streams[3 * k], rounds=rounds, sections=4, repeats=repeats
+        )
+        assaults.append(Assault(name, runs[0], runs[1], found))
+    report("attacks", 6, 6)
+    return replace(blank, arena=arena, below=below, above=above, assaults=tuple(assaults))
+
+
+def judged(result: Escape) -> Escape:
+    """The verdict on attacks that were made."""
+    unit, sigma_0 = result.case.outline.diameter, result.cage.sigma_0
+    if result.cage.sigma_max is not None:
+        room = (result.cage.sigma_max - sigma_0) / unit
+        if room < THINNEST * result.penetration_max:
+            why = (
+                f"sigma_max - sigma_0 is {room:.2g} diameters, under {THINNEST:g} times the "
+                f"penetration of {result.penetration_max:.2g}"
+            )
+            return replace(result, verdict="too_thin_for_physics", why=why)
+    failures = tuple(sentence for a in result.assaults for sentence in _failures(result, a))
+    return replace(result, failures=failures, verdict="failed" if failures else "ok")
+
+
+def _failures(result: Escape, assault: Assault) -> Iterator[str]:
+    """What did not hold. Nothing is forgiven: the limits are those promised."""
+    name = f"{result.case.name}: {assault.attacker} attacks"
+    for run in (assault.below, assault.above):
+        if run is not None and run.diverged:
+            yield f"{name}: {run.diverged} of {len(run)} diverged (seed {result.seed})"
+    if assault.below.escapes:
+        yield f"{name}: {assault.below.escapes} of {len(assault.below)} escaped below sigma_max"
+    if assault.attacker == "guided" and assault.above is not None:
+        out, tried = assault.above.escapes, len(assault.above)
+        if out < SURE * tried:
+            yield f"{name}: only {out} of {tried} escaped above sigma_max along the plan's way out"
+    top, found, unit = result.cage.sigma_max, assault.measured, result.case.outline.diameter
+    if found is None or top is None:
+        return
+    low, high = at(top, result.cage.sigma_0, -1), result.above or math.inf
+    if found.high * unit < low:
+        yield f"{name} measure a sigma_max of at most {found.high * unit:.6g}; planned {top:.6g}"
+    if assault.attacker == "guided" and found.low * unit > high:
+        yield f"{name} measure a sigma_max of at least {found.low * unit:.6g}; planned {top:.6g}"

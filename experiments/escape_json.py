@@ -1,0 +1,129 @@
+"""What ``icage escape`` answers: a document of format ``icage-escape/1`` and a table."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from experiments.escape import Assault, Escape, wilson_upper
+from sim.attack import Attacks
+from sim.measure import Measured
+
+FORMAT: Final = "icage-escape/1"
+
+
+def escape_document(result: Escape) -> dict[str, Any]:
+    """Levels, intervals and depths in the case's unit; time step in [s]."""
+    cage, unit = result.cage, result.case.outline.diameter
+    config = None if result.arena is None else result.arena.scene.config
+    return {
+        "format": FORMAT,
+        "case": result.case.name,
+        "derived": result.derived,
+        "unit": result.case.unit,
+        "diameter": unit,
+        "finger_radius": result.case.finger_radius,
+        "contacts": result.case.contacts,
+        "verdict": result.verdict,
+        "why": result.why,
+        "failures": list(result.failures),
+        "plan_verdict": cage.verdict,
+        "sigma_0": cage.sigma_0,
+        "sigma_max": cage.sigma_max,
+        "sigma_max_upper": cage.sigma_max_upper,
+        "sigma_largest": cage.sigma_largest,
+        "level_below": result.below,
+        "level_above": result.above,
+        "seed": result.seed,
+        "attackers": {a.attacker: _assault(a, unit) for a in result.assaults},
+        "penetration_max": result.penetration_max * unit,
+        "time_step": None if config is None else config.time_step,
+        "solref": None if config is None else [config.contact_solref * config.time_step, 1.0],
+        "solimp": None if config is None else list(config.solimp),
+    }
+
+
+def _assault(assault: Assault, unit: float) -> dict[str, Any]:
+    return {
+        "below": _run(assault.below, unit),
+        "above": None if assault.above is None else _run(assault.above, unit),
+        "measured": None if assault.measured is None else _measured(assault.measured, unit),
+    }
+
+
+def _run(run: Attacks, unit: float) -> dict[str, Any]:
+    return {
+        "attacks": len(run),
+        "escapes": run.escapes,
+        "diverged": run.diverged,
+        "rate_upper_95": wilson_upper(run.escapes, len(run)),
+        "penetration_max": float(run.penetration_max.max()) * unit,
+        "stop_overrun": max(float(run.rise_max.max()) - 1.0, 0.0),
+        "steps_mean": float(run.steps.mean()),
+    }
+
+
+def _measured(found: Measured, unit: float) -> dict[str, Any]:
+    return {
+        "low": found.low * unit,
+        "high": found.high * unit if math.isfinite(found.high) else None,
+        "high_seen": found.seen * unit if math.isfinite(found.seen) else None,
+        "attacks": found.attacks,
+        "escapes": found.escaped,
+        "held_below": found.held,
+        "penetration_max": found.penetration_max * unit,
+        "stop_overrun": max(found.rise_max - 1.0, 0.0),
+    }
+
+
+def escape_table(result: Escape) -> list[str]:
+    """Lines to read: the plan, a row an attacker, settings, verdict."""
+    cage, case, unit = result.cage, result.case, result.case.outline.diameter
+    top = "never" if cage.sigma_max is None else f"{cage.sigma_max:.6g}"
+    lines = [
+        f"{case.name}: {len(case.outline)} vertices, diameter {unit:.6g} {case.unit}, fingers of "
+        f"radius {case.finger_radius:.6g} {case.unit}, seed {result.seed}",
+        f"planned: {cage.verdict}, sigma_0 {cage.sigma_0:.6g}, sigma_max {top}",
+    ]
+    if result.derived:
+        lines.append("derived from point fingers: discs, target where this hand closes")
+    if result.arena is not None:
+        head = ("attacker", "below", "escaped", "rate <", "above", "escaped", "deepest", "overrun",
+                "measured sigma_max", "off by")  # fmt: skip
+        rows = [head, *(_row(result, a) for a in result.assaults)]
+        widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
+        lines += [
+            "  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True)) for row in rows
+        ]
+        config = result.arena.scene.config
+        above = "-" if result.above is None else f"{result.above:.6g}"
+        lines.append(
+            f"below {result.below:.6g}, above {above}; rate: Wilson's 95 % bound; deepest: finger "
+            "over the diameter; overrun: of the stop, over sigma"
+        )
+        lines.append(
+            f"time step {config.time_step:g} s, solref "
+            f"{config.contact_solref * config.time_step:g} 1, solimp "
+            f"{' '.join(f'{v:g}' for v in config.solimp)}"
+        )
+    lines.append(f"{result.verdict}{'' if result.why is None else f': {result.why}'}")
+    return lines
+
+
+def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
+    below, above, found = assault.below, assault.above, assault.measured
+    unit, top = result.case.outline.diameter, result.cage.sigma_max
+    runs = [run for run in (below, above) if run is not None]
+    interval, off = "-", "-"
+    if found is not None and top is not None:
+        interval = f"[{found.low * unit:.6g}, {found.high * unit:.6g}]"
+        off = f"{100.0 * (found.low * unit / top - 1.0):+.3f} .. "
+        off += f"{100.0 * (found.high * unit / top - 1.0):+.3f} %"
+    return (
+        assault.attacker, str(len(below)), str(below.escapes),
+        f"{100.0 * wilson_upper(below.escapes, len(below)):.1f} %",
+        *(("-", "-") if above is None else (str(len(above)), str(above.escapes))),
+        f"{max(float(run.penetration_max.max()) for run in runs):.1e}",
+        f"{max(max(float(run.rise_max.max()) - 1.0, 0.0) for run in runs):.1e}",
+        interval, off,
+    )  # fmt: skip

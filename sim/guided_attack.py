@@ -1,0 +1,183 @@
+"""The object led along a given path of the hand, by springs weak enough to obey the fingers.
+
+The path is the plan's own claim of a way out. Its rows are inverted to poses of the object in the
+palm's frame; a carrot runs along them and the object follows it, with a little random force on top.
+If the carrot cannot advance any more the object is held.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+
+from icage.arrays import FloatArray, IntArray
+from sim.random_attack import PUSH, opening_force
+from sim.scene import Scene
+
+FINE = 2e-3
+"""[diameter] Spacing of the points of a path."""
+
+TURN_LENGTH = 0.5
+"""[diameter / rad] A turn by one radian counts as a way of this length."""
+
+
+@dataclass(frozen=True, slots=True)
+class GuidedPull:
+    """How the object is led. Forces in [mass diameter / s^2]."""
+
+    speed: float = 0.4
+    """[diameter / s] Of the carrot, at most."""
+
+    stiffness: float = 4e3
+    """[mass / s^2] Of the leading spring: the object lags 25 ms behind."""
+
+    force: float = 50.0
+    """Largest force of the spring."""
+
+    grip: float = 150.0
+    """Largest force of the motor, root sum square of the fingers."""
+
+    lag: float = 0.03
+    """[diameter] The carrot waits while the object is farther away than this."""
+
+    patience: float = 0.6
+    """[s] A carrot that has not moved for so long: the object is held."""
+
+    jitter: float = 10.0
+    """Largest random force, new every ``jitter_time`` seconds."""
+
+    jitter_time: float = 0.1
+    """[s]"""
+
+    max_time: float = 60.0
+    """[s] Bound on one attack."""
+
+
+def object_path(scene: Scene, hand_path: FloatArray) -> FloatArray:
+    """Way points (p, 5) = object's x, y, turn in P, sigma, length so far; all in diameters, rad.
+
+    ``hand_path`` (k, 4) = x, y, theta, sigma of the hand in B. Between its rows d and
+    w = sigma e^{i theta} change linearly (cells are convex in them), so theta does not.
+    """
+    rows = np.asarray(hand_path, dtype=np.float64)
+    d = rows[:, 0] + 1j * rows[:, 1]
+    w = rows[:, 3] * np.exp(1j * rows[:, 2])
+    size = scene.thing.unit
+    parts: list[FloatArray] = []
+    for k in range(len(rows) - 1):
+        side = (abs(d[k + 1] - d[k]) + abs(w[k + 1] - w[k])) / size
+        turn = abs(np.angle(w[k + 1] * np.conj(w[k]))) if w[k + 1] and w[k] else 0.0
+        steps = max(1, math.ceil((side + turn) / FINE))
+        share = np.arange(steps + (k == len(rows) - 2)) / steps
+        here = d[k] + share * (d[k + 1] - d[k])
+        wide = w[k] + share * (w[k + 1] - w[k])
+        parts.append(np.column_stack([here.real, here.imag, np.angle(wide), np.abs(wide)]))
+    fine = np.concatenate(parts)
+    shut = fine[:, 3] < 1e-9 * size
+    if shut.any():  # a shut hand has no direction: it keeps its last one
+        last = int(np.flatnonzero(~shut)[-1])
+        fine[last + 1 :, 2] = fine[last, 2]
+    fine[:, 2] = np.unwrap(fine[:, 2])
+    qpos = scene.start_positions(fine)
+    way = np.column_stack([qpos[:, 3:6], fine[:, 3] / size])
+    step = np.diff(way, axis=0) * [1.0, 1.0, TURN_LENGTH, 1.0]
+    length = np.concatenate([[0.0], np.cumsum(np.hypot.reduce(step, axis=1))])
+    return np.column_stack([way, length])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GuidedDriver:
+    """N attacks along one path (p, 5) of ``object_path``; randomness from ``rng``.
+
+    Where the stop allows more than the path's largest sigma, the whole path is opened in that
+    ratio about the palm's centre; where it allows less, the path's sigma is cut at the stop.
+    """
+
+    scene: Scene
+    openings: FloatArray
+    path: FloatArray
+    rng: np.random.Generator
+    pull: GuidedPull = GuidedPull()
+    _jitter: FloatArray = field(init=False, repr=False)
+    _pace: FloatArray = field(init=False, repr=False)
+    _at: FloatArray = field(init=False, repr=False)
+    _waited: FloatArray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        count, pull = len(self.openings), self.pull
+        pieces = math.ceil(pull.max_time / pull.jitter_time)
+        jitter, pace = np.empty((count, pieces, 3)), np.empty(count)
+        for i, own in enumerate(self.rng.spawn(count)):
+            pace[i] = pull.speed * own.uniform(0.6, 1.0)
+            jitter[i] = pull.jitter * own.uniform(-1.0, 1.0, (pieces, 3)) * [1.0, 1.0, 0.3]
+        object.__setattr__(self, "_jitter", jitter)
+        object.__setattr__(self, "_pace", pace)
+        object.__setattr__(self, "_at", np.zeros(count))
+        object.__setattr__(self, "_waited", np.zeros(count))
+
+    @property
+    def max_steps(self) -> int:
+        """[step] Bound on one attack."""
+        return math.ceil(self.pull.max_time / self.scene.config.time_step)
+
+    def drive(
+        self, ids: IntArray, step: int, qpos: FloatArray, wrench: FloatArray, motor: FloatArray
+    ) -> IntArray:
+        """Advance the carrots, pull the objects after them."""
+        pull, dt = self.pull, self.scene.config.time_step
+        goal = np.empty((len(ids), 4))
+        lead: Callable[..., None] = _lead
+        lead(
+            ids, qpos, self.path, dt, self._pace, pull.lag, pull.stiffness, pull.force,
+            self.scene.thing.gyration_squared, self._at, self._waited, goal, wrench,
+        )  # fmt: skip
+        piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)
+        wrench[ids] += self._jitter[ids, piece]
+        stop = self.openings[ids]
+        wider = np.maximum(stop / self.path[:, 3].max(), 1.0)
+        sigma = np.minimum(goal[:, 3] * wider, stop * (1.0 + 1e-3))
+        sigma = np.where(goal[:, 3] * wider >= stop * (1.0 - 1e-3), stop * PUSH, sigma)
+        motor[ids] = opening_force(self.scene, sigma, qpos[ids], 2.0 * pull.stiffness, pull.grip)
+        return ids[self._waited[ids] > pull.patience]
+
+
+@njit(cache=True)
+def _lead(
+    ids: IntArray,
+    qpos: FloatArray,
+    path: FloatArray,
+    dt: float,
+    pace: FloatArray,
+    lag: float,
+    stiffness: float,
+    force: float,
+    spin: float,
+    at: FloatArray,
+    waited: FloatArray,
+    goal: FloatArray,
+    wrench: FloatArray,
+) -> None:  # pragma: no cover - compiled
+    last = path.shape[0] - 1
+    end = path[last, 4]
+    for n in range(len(ids)):
+        i = ids[n]
+        k = min(max(np.searchsorted(path[:, 4], at[i], side="right") - 1, 0), last - 1)
+        span = path[k + 1, 4] - path[k, 4]
+        share = min((at[i] - path[k, 4]) / span, 1.0) if span > 0.0 else 1.0
+        for j in range(4):
+            goal[n, j] = path[k, j] + share * (path[k + 1, j] - path[k, j])
+        ex, ey, turn = goal[n, 0] - qpos[i, 3], goal[n, 1] - qpos[i, 4], goal[n, 2] - qpos[i, 5]
+        away = math.hypot(ex, ey)
+        if away + TURN_LENGTH * abs(turn) < lag and at[i] < end:
+            at[i] = min(at[i] + pace[i] * dt, end)
+            waited[i] = 0.0
+        else:
+            waited[i] += dt
+        cut = stiffness * min(1.0, force / (stiffness * away)) if away > 0.0 else 0.0
+        wrench[i, 0], wrench[i, 1] = cut * ex, cut * ey
+        most = force * math.sqrt(spin)
+        wrench[i, 2] = min(max(stiffness * spin * turn, -most), most)

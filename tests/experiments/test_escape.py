@@ -1,0 +1,194 @@
+"""``icage escape``: levels, verdicts, the document; and that planted faults are found."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from experiments import escape as escapes
+from experiments.derived import DerivedError, derived_case
+from experiments.escape import Assault, Escape, at, escape, judged, wilson_upper
+from icage.cage import Cage
+from icage.errors import InputError
+from icage.formats.case_json import Case, read_case
+from icage.planner import plan
+from sim.attack import ESCAPED, HELD, Attacks
+from sim.closing import close
+from sim.config import SimConfig
+from sim.measure import Measured
+from sim.scene import Scene
+from tests.cli.runner import here
+from tests.conftest import CASES
+from tests.experiments.small import cage_of, t_case, write_case
+
+
+def silent(stage: str, done: int, total: int) -> None:
+    assert 0 <= done <= total, stage
+
+
+def test_levels_and_bounds():
+    assert at(2.0, 1.0, -1) == pytest.approx(1.996)
+    assert at(2.0, 1.0, 1) == pytest.approx(2.004)
+    assert at(1.001, 1.0, -1) == pytest.approx(1.0009)
+    assert wilson_upper(0, 200) == pytest.approx(0.01335, abs=1e-4)
+    assert wilson_upper(24, 24) == 1.0
+    assert 0.1 < wilson_upper(1, 24) < 0.2
+
+
+def faked(**changed: Any) -> Escape:
+    """Attacks on the T that went as planned, with changes: escapes, depth, interval."""
+    case, cage = t_case(), cage_of("T")
+    assert cage.sigma_max is not None
+    unit = case.outline.diameter
+    top = cage.sigma_max / unit
+    kind = changed.get("attacker", "guided")
+
+    def run(out: int, level: float) -> Attacks:
+        ending = np.where(np.arange(20) < out, ESCAPED, HELD)
+        deep = np.full(20, changed.get("depth", 1e-4))
+        return Attacks(
+            np.full(20, level), ending, np.ones(20, dtype=np.int64), deep, np.ones(20),
+            np.zeros((20, 6)),
+        )  # fmt: skip
+
+    low, high = changed.get("interval", (0.9999, 1.0001))
+    found = Measured(low * top, high * top, high * top, 9, 9, 18, 1e-4, 1.0)
+    assault = Assault(
+        kind, run(changed.get("below", 0), top), run(changed.get("above", 20), top), found
+    )
+    above = at(cage.sigma_max, cage.sigma_0, 1)
+    return Escape(case, False, cage, 20, 0, below=0.0, above=above, assaults=(assault,))
+
+
+def test_what_goes_as_planned_is_ok():
+    assert judged(faked()).verdict == "ok"
+    assert judged(faked(above=19)).verdict == "ok"
+    assert judged(faked(attacker="random", above=0, interval=(1.03, np.inf))).verdict == "ok"
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"below": 1}, "1 of 20 escaped below sigma_max"),
+        ({"attacker": "random", "below": 2}, "random attacks: 2 of 20 escaped below"),
+        ({"above": 18}, "only 18 of 20 escaped above"),
+        ({"interval": (0.98, 0.99)}, "at most"),
+        ({"attacker": "random", "interval": (0.98, 0.99)}, "at most"),
+        ({"interval": (1.01, 1.02)}, "at least"),
+        ({"interval": (1.01, np.inf)}, "at least"),
+    ],
+)
+def test_every_fault_fails(changed: dict[str, Any], words: str):
+    result = judged(faked(**changed))
+    assert result.verdict == "failed"
+    assert any(words in sentence for sentence in result.failures)
+
+
+def test_a_cage_thinner_than_the_penetration_is_not_judged():
+    result = judged(faked(below=3, depth=0.02))
+    assert result.verdict == "too_thin_for_physics"
+    assert "20 times the penetration of 0.02" in str(result.why)
+    assert not result.failures
+
+
+def test_derived_cases():
+    case = read_case(CASES / "T_best.json")
+    found = derived_case(case, np.random.default_rng(0))
+    assert found.finger_radius == pytest.approx(0.02 * case.outline.diameter)
+    cage = plan(found.outline, found.contacts, found.finger_radius)
+    assert cage.verdict == "cage"
+    assert cage.hand.phi == pytest.approx(cage_of("T_best").hand.phi, abs=1e-6)
+    again = derived_case(case, np.random.default_rng(0))
+    assert np.array_equal(again.contacts, found.contacts)
+    with pytest.raises(InputError, match="disc fingers already"):
+        derived_case(found, np.random.default_rng(0))
+
+
+def test_a_target_that_is_gone_is_said_so():
+    case = read_case(CASES / "notched_bar_best.json")
+    with pytest.raises(DerivedError, match=r"no derived case: radius 2 %.*radius 1 %"):
+        derived_case(case, np.random.default_rng(0))
+
+
+def test_not_a_cage_is_not_attacked(tmp_path: Path, capsys: Any):
+    out = tmp_path / "answer.json"
+    result = here(capsys, "escape", str(CASES / "rectangle_notcage.json"), "--json", str(out))
+    assert result.code == 0
+    assert "not_a_cage" in result.out
+    document = json.loads(out.read_text())
+    assert (document["format"], document["verdict"]) == ("icage-escape/1", "ok")
+    assert (document["plan_verdict"], document["attackers"]) == ("not_a_cage", {})
+
+
+def test_bad_input(tmp_path: Path, capsys: Any):
+    case = write_case(t_case(), tmp_path / "t.json")
+    assert "--attacks" in here(capsys, "escape", str(case), "--attacks", "0").error_line()
+    assert "input" in here(capsys, "escape", str(case), "--json", str(case)).error_line()
+    assert "does not exist" in here(capsys, "escape", "nothing").error_line()
+
+
+@pytest.mark.slow
+def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
+    case = write_case(t_case(), tmp_path / "t.json")
+    out = tmp_path / "answer.json"
+    result = here(capsys, "escape", str(case), "--attacks", "4", "--json", str(out))
+    assert result.code == 0, result
+    document = json.loads(out.read_text())
+    assert document["verdict"] == "ok"
+    for name in ("random", "guided"):
+        assert document["attackers"][name]["below"]["escapes"] == 0
+        assert document["attackers"][name]["below"]["attacks"] == 4
+    guided = document["attackers"]["guided"]
+    assert guided["above"]["escapes"] == 4
+    top = document["sigma_max"]
+    assert guided["measured"]["low"] == pytest.approx(top, rel=5e-4)
+    assert guided["measured"]["high"] == pytest.approx(top, rel=5e-4)
+    assert document["penetration_max"] < 1e-3 * document["diameter"]
+
+
+def planted(monkeypatch: pytest.MonkeyPatch, case: Case, wrong: Cage) -> Escape:
+    monkeypatch.setattr(escapes, "plan", lambda *_: wrong)
+    return escape(case, 4, 0, 2, silent)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("factor", "words"), [(1.01, "escaped below"), (0.99, "escaped above")])
+def test_a_wrong_sigma_max_is_found(monkeypatch: pytest.MonkeyPatch, factor: float, words: str):
+    cage = cage_of("T")
+    assert cage.sigma_max is not None
+    assert cage.sigma_max_upper is not None
+    wrong = replace(
+        cage, sigma_max=factor * cage.sigma_max, sigma_max_upper=factor * cage.sigma_max_upper
+    )
+    result = planted(monkeypatch, t_case(), wrong)
+    assert result.verdict == "failed"
+    assert any("guided" in sentence and words in sentence for sentence in result.failures)
+    assert any("guided" in sentence and "measure" in sentence for sentence in result.failures)
+
+
+@pytest.mark.slow
+def test_a_finger_radius_two_percent_off_is_found(monkeypatch: pytest.MonkeyPatch):
+    """Discs of 8 % of the diameter; the planner is told 2 % more than the fingers have."""
+    point = read_case(CASES / "triangle_eq_best.json")
+    cages: list[Cage] = []
+    for share in (0.08, 0.08 * 1.02):
+        radius = share * point.outline.diameter
+        hand = cage_of("triangle_eq_best").hand
+        start = cage_of("triangle_eq_best").target_placement
+        wide = replace(start, sigma=2.2 * start.sigma)
+        z = complex(hand.z.mean())
+        back = (start.sigma - wide.sigma) * np.exp(1j * start.theta) * z
+        wide = replace(wide, x=wide.x + back.real, y=wide.y + back.imag)
+        closed = close(Scene(point.outline, hand, radius, SimConfig()), wide)
+        assert closed.ending == "settled"
+        cages.append(plan(point.outline, hand.fingers(closed.end.as_array()), radius))
+    right, wrong = cages
+    case = Case("triangle", "mm", point.outline, right.finger_radius, right.contacts)
+    result = planted(monkeypatch, case, wrong)
+    assert result.verdict == "failed"
+    assert any("guided" in sentence and "measure" in sentence for sentence in result.failures)
