@@ -159,8 +159,9 @@ def _attacked(blank: Escape, rng: np.random.Generator, threads: int, report: Rep
             runs.append(attack_at(np.full(attacks, level / unit), streams[3 * k + len(runs)]))
         report("attacks", 3 * k + 2, 6)
         found = measure(
-            attack_at, window, streams[3 * k], rounds=rounds, sections=4, repeats=repeats
-        )
+            attack_at, window, streams[3 * k + 2], rounds=rounds, sections=4, repeats=repeats,
+            known=runs,
+        )  # fmt: skip
         assaults.append(Assault(name, runs[0], runs[1], found))
     report("attacks", 6, 6)
     return replace(blank, arena=arena, below=below, above=above, assaults=tuple(assaults))

@@ -89,7 +89,7 @@ def escape_table(result: Escape) -> list[str]:
         lines.append("derived from point fingers: discs, target where this hand closes")
     if result.arena is not None:
         head = ("attacker", "below", "escaped", "rate <", "above", "escaped", "deepest", "overrun",
-                "measured sigma_max", "off by")  # fmt: skip
+                "measured sigma_max", "off by", "seen")  # fmt: skip
         rows = [head, *(_row(result, a) for a in result.assaults)]
         widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
         lines += [
@@ -99,7 +99,8 @@ def escape_table(result: Escape) -> list[str]:
         above = "-" if result.above is None else f"{result.above:.6g}"
         lines.append(
             f"below {result.below:.6g}, above {above}; rate: Wilson's 95 % bound; deepest: finger "
-            "over the diameter; overrun: of the stop, over sigma"
+            "over the diameter; overrun: of the stop, over sigma; "
+            "seen: least sigma that an escape had"
         )
         lines.append(
             f"time step {config.time_step:g} s, solref "
@@ -114,16 +115,17 @@ def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
     below, above, found = assault.below, assault.above, assault.measured
     unit, top = result.case.outline.diameter, result.cage.sigma_max
     runs = [run for run in (below, above) if run is not None]
-    interval, off = "-", "-"
+    interval, off, seen = "-", "-", "-"
     if found is not None and top is not None:
         interval = f"[{found.low * unit:.6g}, {found.high * unit:.6g}]"
         off = f"{100.0 * (found.low * unit / top - 1.0):+.3f} .. "
         off += f"{100.0 * (found.high * unit / top - 1.0):+.3f} %"
+        seen = f"{100.0 * (found.seen * unit / top - 1.0):+.3f} %"
     return (
         assault.attacker, str(len(below)), str(below.escapes),
         f"{100.0 * wilson_upper(below.escapes, len(below)):.1f} %",
         *(("-", "-") if above is None else (str(len(above)), str(above.escapes))),
         f"{max(float(run.penetration_max.max()) for run in runs):.1e}",
         f"{max(max(float(run.rise_max.max()) - 1.0, 0.0) for run in runs):.1e}",
-        interval, off,
+        interval, off, seen,
     )  # fmt: skip

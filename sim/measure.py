@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,27 +52,30 @@ def measure(
     rounds: int,
     sections: int,
     repeats: int,
+    known: Sequence[Attacks] = (),
 ) -> Measured:
     """Cut a window of openings [diameter] in ``sections`` and go on in the one where escapes begin.
 
     Every level is attacked ``repeats`` times in a round. ``rounds`` narrow the window by a factor
-    of ``sections + 1`` each.
+    of ``sections + 1`` each; it begins below any escape that is ``known`` already.
     """
     low, high = window
     if not 0.0 < low < high < math.inf:
         raise InputError(f"a window of openings {window} has no width")
-    runs: list[Attacks] = []
-    for _ in range(rounds):
-        inner = np.linspace(low, high, sections + 2)
-        levels = np.unique(np.concatenate([inner[:1], inner[1:-1], inner[-1:]]))
-        tried = levels if not runs else levels[1:-1]
-        run = attack_at(np.repeat(tried, repeats), rng)
-        runs.append(run)
-        out = run.openings[run.ending == ESCAPED]
-        first = float(out.min()) if len(out) else float(levels[-1])
-        low = float(levels[levels < first].max(initial=float(levels[0])))
-        high = max(first, low)
-        if not high > low or (len(runs) == 1 and not len(out)):
+    runs = list(known)
+    least = _least_escape(runs)
+    high = least if low < least < high else high
+    for number in range(rounds):
+        levels = np.linspace(low, high, sections + 2)
+        ends = number == 0  # later both ends have been attacked
+        tried = levels if ends else levels[1:-1]
+        runs.append(attack_at(np.repeat(tried, repeats), rng))
+        least = _least_escape(runs)
+        if not low < least <= high:
+            break
+        high = least
+        low = float(levels[levels < least].max())
+        if not high > low * (1.0 + 1e-12):
             break
     openings = np.concatenate([run.openings for run in runs])
     escaped = np.concatenate([run.ending == ESCAPED for run in runs])
@@ -88,4 +91,12 @@ def measure(
         attacks=len(openings),
         penetration_max=max(float(run.penetration_max.max()) for run in runs),
         rise_max=float(rise.max()),
+    )
+
+
+def _least_escape(runs: Sequence[Attacks]) -> float:
+    """Least opening at which one escaped, inf if none did."""
+    return min(
+        (float(run.openings[run.ending == ESCAPED].min()) for run in runs if run.escapes),
+        default=math.inf,
     )

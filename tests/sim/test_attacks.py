@@ -125,6 +125,10 @@ def test_the_interval_closes_in_on_where_escapes_begin():
     assert found.low < 0.7314 <= found.high
     assert found.high - found.low == pytest.approx(0.5 / 5**5, rel=1e-6)
     assert found.escaped + found.held == found.attacks
+    known = threshold(np.array([0.72, 0.74]), rng)
+    sooner = measure(threshold, (0.5, 1.0), rng, rounds=1, sections=2, repeats=1, known=[known])
+    assert (sooner.low, sooner.high) == (0.72, 0.74)
+    assert sooner.attacks == 6
     never = measure(threshold, (0.5, 0.7), rng, rounds=5, sections=4, repeats=2)
     assert (never.low, never.high, never.escaped) == (0.7, np.inf, 0)
     always = measure(threshold, (0.8, 0.9), rng, rounds=5, sections=4, repeats=2)
