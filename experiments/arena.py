@@ -10,12 +10,14 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.formats.case_json import Case
-from sim.attack import Attacks, attack
+from sim.attack import HELD, Attacks, attack
 from sim.config import SimConfig
 from sim.engine import MjModel
 from sim.guided_attack import GuidedDriver, object_path
 from sim.held_hand import held_model
+from sim.measure import AttackAt
 from sim.random_attack import RandomDriver
+from sim.rigid_search import clear_poses, search_many
 from sim.scene import Scene
 
 TIME_STEP: Final = 1e-3
@@ -70,3 +72,14 @@ class Arena:
         driver = GuidedDriver(self.scene, openings, path, rng)
         starts = np.repeat(self.target[None, :], len(openings), axis=0)
         return attack(self.scene, self.model, starts, openings, driver, self.threads)
+
+    def rigid(self, held: Attacks) -> AttackAt | None:
+        """Tree searches with a rigid hand, from where random attacks left the object.
+
+        Only from ends of attacks that began at the target and below sigma_max: nothing of the
+        plan's way out is used. None if no end is clear of a hand that is held there.
+        """
+        inside = held.end[::2][held.ending[::2] == HELD]
+        if not len(clear_poses(self.scene, inside, float(held.openings[0]))):
+            return None
+        return lambda openings, rng: search_many(self.scene, inside, openings, rng)

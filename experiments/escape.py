@@ -20,7 +20,7 @@ from icage.cage import Cage
 from icage.formats.case_json import Case
 from icage.planner import plan
 from sim.attack import Attacks
-from sim.measure import Measured, measure
+from sim.measure import AttackAt, Measured, measure
 
 THINNEST: Final = 20.0
 """[penetration] A cage with less room above sigma_0 than this is no case for physics."""
@@ -30,6 +30,12 @@ NEAR: Final = 0.002
 
 SURE: Final = 0.95
 """[1] Share of guided attacks above sigma_max that must escape."""
+
+ATTACKERS: Final = ("random", "guided", "rigid")
+"""random and guided: the hand may close; rigid: it may not, and is searched without the plan."""
+
+MOST_TREES: Final = 8
+"""Tree searches a level: they take up to a second each, and a few are as good as many."""
 
 Verdict = Literal["ok", "failed", "too_thin_for_physics", "no_derived_case"]
 Report = Callable[[str, int, int], None]
@@ -136,7 +142,7 @@ def _attacked(blank: Escape, rng: np.random.Generator, threads: int, report: Rep
     """All attacks on a planned case."""
     case, cage, attacks = blank.case, blank.cage, blank.attacks
     unit = case.outline.diameter
-    streams = rng.spawn(6)
+    streams = rng.spawn(9)
     if cage.sigma_max is None:
         below = cage.sigma_largest or cage.sigma_0
         arena = Arena.of(case, cage, below, threads)
@@ -145,26 +151,33 @@ def _attacked(blank: Escape, rng: np.random.Generator, threads: int, report: Rep
         report("attacks", 1, 1)
         return replace(blank, arena=arena, below=below, assaults=(only,))
     upper = cage.sigma_max_upper or cage.sigma_max
-    below, above = at(cage.sigma_max, cage.sigma_0, -1), at(upper, cage.sigma_0, 1)
-    arena = Arena.of(case, cage, below, threads)
+    levels = at(cage.sigma_max, cage.sigma_0, -1), at(upper, cage.sigma_0, 1)
+    arena = Arena.of(case, cage, levels[0], threads)
     room = min(0.05 * upper, 0.5 * (upper - cage.sigma_0))
     window = ((cage.sigma_max - room) / unit, (upper + room) / unit)
-    assaults: list[Assault] = []
-    for k, (name, attack_at, rounds, repeats) in enumerate(
-        (("random", arena.random, 2, max(4, attacks // 4)), ("guided", arena.guided, 4, 3))
-    ):
+
+    def assault(name: str, attack_at: AttackAt, number: int, rounds: int, repeats: int) -> Assault:
+        first = 3 * ATTACKERS.index(name)
         runs: list[Attacks] = []
-        for level in (below, above):
-            report("attacks", 3 * k + len(runs), 6)
-            runs.append(attack_at(np.full(attacks, level / unit), streams[3 * k + len(runs)]))
-        report("attacks", 3 * k + 2, 6)
+        for k, level in enumerate(levels):
+            report("attacks", first + k, 9)
+            runs.append(attack_at(np.full(number, level / unit), streams[first + k]))
+        report("attacks", first + 2, 9)
         found = measure(
-            attack_at, window, streams[3 * k + 2], rounds=rounds, sections=4, repeats=repeats,
+            attack_at, window, streams[first + 2], rounds=rounds, sections=4, repeats=repeats,
             known=runs,
         )  # fmt: skip
-        assaults.append(Assault(name, runs[0], runs[1], found))
-    report("attacks", 6, 6)
-    return replace(blank, arena=arena, below=below, above=above, assaults=tuple(assaults))
+        return Assault(name, runs[0], runs[1], found)
+
+    random = assault("random", arena.random, attacks, 2, max(4, attacks // 4))
+    assaults = [random, assault("guided", arena.guided, attacks, 4, 3)]
+    rigid = arena.rigid(random.below)
+    if rigid is not None:
+        assaults.append(assault("rigid", rigid, min(attacks, MOST_TREES), 4, 2))
+    report("attacks", 9, 9)
+    return replace(
+        blank, arena=arena, below=levels[0], above=levels[1], assaults=tuple(assaults)
+    )  # fmt: skip
 
 
 def judged(result: Escape) -> Escape:

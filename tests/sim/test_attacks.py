@@ -15,6 +15,7 @@ from sim.guided_attack import GuidedDriver, object_path
 from sim.held_hand import held_batch, held_model
 from sim.measure import measure
 from sim.random_attack import RandomDriver, RandomPull
+from sim.rigid_search import CLEAR, clear_poses, search_many, search_tree
 from sim.scene import Scene
 from tests.sim.grasps import t_shape
 
@@ -146,3 +147,20 @@ def test_a_broken_run_is_no_success():
     run = attack(scene, held_model(scene), starts, opening, driver, 1)
     assert run.ending.tolist() == [HELD, DIVERGED]
     assert (run.escapes, run.diverged) == (0, 1)
+
+
+def test_a_rigid_hand_is_left_above_sigma_max_only():
+    scene, cage = t_cage()
+    assert cage.sigma_max is not None
+    top = cage.sigma_max / scene.thing.unit
+    inside = random_attacks(np.full(4, 0.99 * top), 0, 2, 2.0).end
+    assert len(clear_poses(scene, inside, 0.99 * top)) == 4
+    assert not len(clear_poses(scene, inside, 0.5 * top))
+    openings = top * np.array([0.99, 0.998, 1.004, 1.02])
+    run = search_many(scene, inside, openings, np.random.default_rng(0))
+    assert run.ending.tolist() == [HELD, HELD, ESCAPED, ESCAPED]
+    assert (run.penetration_max == CLEAR).all()
+    again = search_many(scene, inside, openings, np.random.default_rng(0))
+    assert np.array_equal(again.steps, run.steps)
+    nowhere = search_tree(scene, np.zeros((0, 3)), top, np.random.default_rng(0))
+    assert (nowhere.escaped, nowhere.nodes) == (False, 0)
