@@ -14,15 +14,15 @@ from sim.quasi_static import compare, variant_config
 from tests.sim.grasps import l_shape, starts_near, t_shape, triangle
 from tests.sim.test_shake import skew
 
-BRIEF = replace(SimConfig(), max_time=0.6)
+BRIEF = replace(SimConfig(), max_time=0.5)
 
 
 @pytest.mark.parametrize("mu", [0.05, 0.1, 0.2])
 def test_a_jammed_three_edge_grasp_is_turned_by_the_angle_of_friction_at_most(mu: float):
     known = triangle()
-    starts = starts_near(known, 8, seed=1, opening=1.3, turn=0.4)
+    starts = starts_near(known, 5, seed=1, opening=1.3, turn=0.4)
     row = friction_row(known.scene(BRIEF), known.contacts, starts, mu)
-    assert row.on_edges >= 6
+    assert row.on_edges >= 4
     assert row.holds
     assert row.worst <= row.bound + SLACK
     assert row.worst > 0.3 * row.bound  # it does jam: the bound is not idle
@@ -52,7 +52,7 @@ def test_the_bound_is_for_three_edges():
 @pytest.mark.parametrize("make", [triangle, l_shape, t_shape])
 def test_twice_slower_or_half_the_time_step_changes_no_end(make):
     known = make()
-    starts = starts_near(known, 4, seed=3, opening=1.3)
+    starts = starts_near(known, 3, seed=3, opening=1.3)
     # with half a step some closings creep at a rate just above still_speed: judged by pose
     scene = known.scene(replace(SimConfig(), max_time=1.5))
     for variant in compare(scene, [known], starts, [(0.5, 1.0), (1.0, 0.5)]):

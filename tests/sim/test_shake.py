@@ -62,7 +62,7 @@ def test_rank_and_closure_are_those_of_the_contacts(name: str):
     assert not answer.agrees_with(other)
 
 
-@pytest.mark.parametrize("name", sorted(GRASPS))
+@pytest.mark.parametrize("name", ["triangle", "T"])
 def test_a_closed_hand_holds(name: str):
     scene, _, qpos = closed(grasp(name))
     answer = shake(scene, qpos, np.random.default_rng(1))
@@ -127,6 +127,7 @@ def test_three_edges_play_by_the_law(make, delta: float):
     assert play.penetration < 1e-2 * delta
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [l_shape, t_shape], ids=["L", "T"])
 def test_concave_corners_play_linearly_as_their_edges_say(make):
     known = make()

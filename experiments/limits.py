@@ -1,0 +1,58 @@
+"""Tables of where the guarantee ends: friction, closing speed, time step (docs/physics.md).
+
+    python3 -m experiments.limits CASE [TRIALS]
+
+prints both for starts drawn from the guaranteed set with seed 0; point fingers become discs.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from experiments.disc_case import physical_case
+from experiments.inputs import find_case
+from experiments.starts import draw_starts
+from sim.config import SimConfig
+from sim.contact_types import supports
+from sim.friction import friction_table
+from sim.quasi_static import SPEEDS, STEPS, compare
+from sim.scene import Scene
+
+FRICTION_TIME: Final = 1.0
+"""[s] Jammed objects creep and never count as still: the ends after this and after twice this."""
+
+
+def tables(name: str, trials: int, seed: int = 0) -> Iterator[str]:
+    """Lines of both tables; the friction table only for three-edge targets."""
+    physical = physical_case(find_case(name))
+    case, cage = physical.case, physical.cage
+    rng = np.random.default_rng(seed)
+    starts = draw_starts(cage, "guaranteed", trials, rng).placements
+    scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
+    yield f"{case.name}, {trials} starts of the guaranteed set, seed {seed}"
+    if supports(case.outline, cage.contacts, case.finger_radius).three_edges:
+        brief = replace(scene.config, max_time=FRICTION_TIME)
+        rough = Scene(case.outline, cage.hand, case.finger_radius, brief)
+        yield "mu     on edges  worst |theta|  atan(mu)  drift"
+        for row in friction_table(rough, cage.contacts, starts):
+            yield (
+                f"{row.mu:<5g}  {row.on_edges:>8d}  {row.worst:13.5f}  {row.bound:8.5f}  "
+                f"{row.drift:.1e}{'' if row.holds else '  OVER'}"
+            )
+    yield "speed  step   changed  timed out  position  angle    deepest"
+    variants = [*((speed, 1.0) for speed in SPEEDS), *((1.0, step) for step in STEPS)]
+    for one in compare(scene, cage.grasps, starts, variants):
+        yield (
+            f"{one.speed:<5g}  {one.step:<5g}  {one.changed:>7d}  {one.timed_out:>9d}  "
+            f"{one.position:.1e}   {one.angle:.1e}  {one.penetration:.1e}"
+        )
+
+
+if __name__ == "__main__":
+    for line in tables(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 40):
+        print(line, flush=True)
