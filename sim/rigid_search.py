@@ -4,8 +4,8 @@ A rapidly exploring random tree over the object's x, y and turn in the palm's fr
 if no disc reaches into the true outline by more than ``CLEAR``. A step is a quarter of the finger's
 radius and looked at in ``LOOKS`` places: between two looks, h apart, a finger can cut a corner by
 h^2 / 8 r, that is r / 4600 (4e-6 diameters for fingers of 2 %). With one look a step it was 36
-times that, and a cross let go 0.06 % below sigma_max. What the tree finds is a way out; what it does
-not find proves nothing. The threshold of a rigid hand may lie above sigma_max, which allows
+times that, and a cross let go 0.06 % below sigma_max. What the tree finds is a way out; what it
+does not find proves nothing. The threshold of a rigid hand may lie above sigma_max, which allows
 closing, never below.
 """
 

