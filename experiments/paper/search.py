@@ -25,7 +25,7 @@ from experiments.paper.page import (
 from experiments.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.basins import escape_edge
-from icage.contact_space.kernels.explore import CHECK, PINCH, SEAM, TUNNEL
+from icage.contact_space.kernels.explore import PINCH, SEAM, TUNNEL
 
 EXPLORED = QUIET_INK
 _GREY = tint(INK, 0.16)
@@ -101,7 +101,7 @@ class _Graph:
         rows += [
             self.at(int(found.entries[p, 0]), found.places[p])
             for p in found.left.tolist()
-            if found.entries[p, 1] != CHECK and self.pair(int(found.entries[p, 0])) == pair
+            if found.entries[p, 1] >= 0 and self.pair(int(found.entries[p, 0])) == pair
         ]
         rows += list(self._study.places(self._study.target, pair))
         places = np.array(rows).reshape(-1, 2)
@@ -146,7 +146,7 @@ class _Graph:
 
     def _open(self, axes: Axes, pair: int) -> None:
         found = self._found
-        rows = [p for p in found.left.tolist() if found.entries[p, 1] != CHECK]
+        rows = [p for p in found.left.tolist() if found.entries[p, 1] >= 0]
         places = [
             self.at(int(found.entries[p, 0]), found.places[p])
             for p in rows

@@ -91,8 +91,8 @@ class ContactLook:
         """Where the three fingers meet at the end of the way out."""
         found, plane = self.found, self.found.plane
         if len(found.edges) and found.edges[-1, 1] < 0:
-            origin, keep = int(found.edges[-1, 0]), int(found.edges[-1, 2])
-            return plane.contacts(last)[(int(found.regions[origin, 0]) + keep) % 3]
+            row = plane.tunnel_edges().rows[int(found.edges[-1, 2])]
+            return plane.contacts(last)[(int(row[0]) + int(row[8])) % 3]
         _, ends = plane.least(found.regions[-1])
         return plane.contacts(ends[0])[int(found.regions[-1, 0])]
 

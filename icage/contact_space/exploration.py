@@ -37,11 +37,21 @@ _SIDES: Final = "side"
 
 
 class TunnelEdges(NamedTuple):
-    """Tunnel edges in the order of the key of the region where they land. See ``all_tunnels``."""
+    """All tunnel edges of a hand, and where a search may enter them.
+
+    ``rows`` (t, 9) and ``hands`` (t, 9) are as of ``all_tunnels``. ``ends`` (e, 2) = row, 1 for its
+    lower end, in the order of ``keys`` (e,), one integer for each region.
+    """
 
     keys: IntArray
-    regions: IntArray
+    ends: IntArray
+    rows: IntArray
     hands: FloatArray
+
+    def downwards(self) -> TunnelEdges:
+        """The same edges, to be entered from above only."""
+        above = self.ends[:, 1] == 0
+        return self._replace(keys=self.keys[above], ends=self.ends[above])
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +76,24 @@ class Plane:
         """All of them, found when first asked for. O(n^2) and O(n) for each candidate."""
         if "tunnels" not in self.remembered:
             found, hands = all_tunnels(self.space)
-            regions = np.asarray(found, dtype=np.int64)
-            n, m = self.space.edges, len(self.space.ptr) - 1
-            i, j, k, c = regions[:, 4:8].T
-            keys = ((i * n + j) * n + k) * m + c
+            rows = np.asarray(found, dtype=np.int64)
+            landing = np.flatnonzero(rows[:, 4] >= 0)
+            ends = np.concatenate(
+                [
+                    np.column_stack([np.arange(len(rows)), np.zeros(len(rows), np.int64)]),
+                    np.column_stack([landing, np.ones(len(landing), np.int64)]),
+                ]
+            )
+            keys = np.concatenate([self.keys(rows[:, :4]), self.keys(rows[landing, 4:8])])
             order = np.argsort(keys, kind="stable")
-            self.remembered["tunnels"] = TunnelEdges(keys[order], regions[order], hands[order])
+            self.remembered["tunnels"] = TunnelEdges(keys[order], ends[order], rows, hands)
         return self.remembered["tunnels"]
+
+    def keys(self, regions: IntArray) -> IntArray:
+        """One integer for each region (k, 4)."""
+        n, m = self.space.edges, len(self.space.ptr) - 1
+        i, j, k, c = regions.T
+        return ((i * n + j) * n + k) * m + c
 
     def corners(self, region: IntArray) -> FloatArray:
         """Corners (m, 2) in (s, u) of region i, j, k, c; empty if there is no such region."""
@@ -125,13 +146,14 @@ class Exploration:
     nodes:
         (r, 4) = least sigma of the region, its s and u, level at which it was reached.
     edges:
-        (e, 4) = from, to (-1: a pinch), label or finger kept, kind (SEAM, TUNNEL, PINCH).
+        (e, 4) = from, to (-1: a pinch), label or row of the tunnel edge, kind (SEAM, TUNNEL,
+        PINCH).
     hands:
-        (e, 9) = level, a hand of least sigma on the edge, the hand where a tunnel lands.
+        (e, 9) = level, a hand of least sigma on the edge, the hand at a tunnel's other end.
     entries, places, left:
         Open list: (p, 2) = region, label; (p, 2) = s, u; rows that were never closed.
-    tunnels_tried, tunnels_used:
-        Least nodes that rays were shot from, and tunnel edges that first reached a region.
+    tunnels_used:
+        Tunnel edges that first reached a region, or a pinched hand.
     """
 
     plane: Plane
@@ -144,7 +166,6 @@ class Exploration:
     entries: IntArray
     places: FloatArray
     left: IntArray
-    tunnels_tried: int
     tunnels_used: int
 
     @property
@@ -185,7 +206,7 @@ class Exploration:
             rectangles_explored=len(rectangles),
             rectangles_total=3 * self.plane.space.edges**2,
             nodes=len(self.regions) + int((self.entries[:, 1] >= 0).sum()),
-            tunnel_edges_tried=self.tunnels_tried,
+            tunnel_edges_tried=len(np.unique(self.edges[self.edges[:, 3] != SEAM, 2])),
             tunnel_edges_used=self.tunnels_used,
         )
 
@@ -204,8 +225,8 @@ class Exploration:
         return SearchStep(sigma, (i + 1, (i + 1) % 3 + 1), (j, k), kind)
 
 
-_NO_TUNNELS: Final = TunnelEdges(
-    np.zeros(0, np.int64), np.zeros((0, 9), np.int64), np.zeros((0, 9))
+NO_TUNNEL_EDGES: Final = TunnelEdges(
+    np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 9), np.int64), np.zeros((0, 9))
 )
 
 
@@ -216,8 +237,8 @@ def explore_from(
     """I-CAGE from a region that holds the target.
 
     ``tunnels=False`` drops Sec. V-B, for teaching. ``both_ways=False`` takes tunnel edges only
-    downwards, when the search closes their upper end, as the paper does; then it may miss basins
-    whose only connection is a tunnel edge that comes down to it.
+    downwards, as the paper does, whose search knows an edge once it has closed its upper end; then
+    it may miss basins whose only connection is a tunnel edge that comes down to it.
 
     Raises
     ------
@@ -225,14 +246,22 @@ def explore_from(
         More than ``limit`` regions.
     """
     start = np.asarray(region[:4], dtype=np.int64)
-    above = plane.tunnel_edges() if tunnels and both_ways else _NO_TUNNELS
-    outcome, level, regions, nodes, edges, hands, entries, places, left, tally = explore(
-        plane.space, start, tunnels, *above, stop_above, limit
+    edges = plane.tunnel_edges() if tunnels else NO_TUNNEL_EDGES
+    outcome, level, regions, nodes, graph, hands, entries, places, left, used = explore(
+        plane.space, start, *(edges if both_ways else edges.downwards()), stop_above, limit
     )
     if outcome == GAVE_UP:
         raise GeometryError(f"the search gave up after {limit} convex regions")
     return Exploration(
-        plane=plane, outcome=int(outcome), level=float(level), regions=regions, nodes=nodes,
-        edges=edges, hands=hands, entries=entries, places=places, left=left,
-        tunnels_tried=int(tally[0]), tunnels_used=int(tally[1]),
-    )  # fmt: skip
+        plane=plane,
+        outcome=int(outcome),
+        level=float(level),
+        regions=np.asarray(regions, dtype=np.int64),
+        nodes=nodes,
+        edges=np.asarray(graph, dtype=np.int64),
+        hands=hands,
+        entries=np.asarray(entries, dtype=np.int64),
+        places=places,
+        left=left,
+        tunnels_used=int(used),
+    )

@@ -7,14 +7,15 @@ leaves at their own level, and drop out by the depth cut.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.contact_space.exploration import Plane
+from icage.contact_space.exploration import NO_TUNNEL_EDGES, Plane, TunnelEdges
 from icage.contact_space.kernels.forest import persistence
-from icage.contact_space.kernels.whole import all_edges, all_regions, hands_at
+from icage.contact_space.kernels.whole import all_regions, all_seams, hands_at
 from icage.tolerance import DEPTH_CUT
 
 
@@ -50,8 +51,11 @@ def sublevels(plane: Plane, *, tunnels: bool = True) -> Sublevels:
     """
     space = plane.space
     regions, nodes, known = all_regions(space)
-    graph, values = all_edges(space, regions, nodes, known, tunnels)
-    edges = np.asarray(graph, dtype=np.int64)
+    seams, values = all_seams(space, regions, known)
+    edges = np.asarray(seams, dtype=np.int64)
+    crossed = plane.tunnel_edges() if tunnels else NO_TUNNEL_EDGES
+    edges = np.vstack([edges, _ends(plane, crossed, known)])
+    values = np.concatenate([values, crossed.hands[:, 0]])
     births, rows, values = _with_pinch(nodes[:, 0].copy(), edges, values, space.pinch)
     merges, levels, _ = persistence(births, rows, values, np.inf)
     ended = np.full(len(births), np.inf)
@@ -61,9 +65,17 @@ def sublevels(plane: Plane, *, tunnels: bool = True) -> Sublevels:
     kept = kept[np.argsort(births[kept], kind="stable")]
     hands = hands_at(space, regions[kept], nodes[kept])
     contacts = np.array([plane.contacts(h) for h in hands]).reshape(-1, 3, 2)
-    return Sublevels(
-        births[kept], ended[kept], contacts, len(regions), int((edges[:, 2] == 1).sum())
-    )
+    return Sublevels(births[kept], ended[kept], contacts, len(regions), len(crossed.rows))
+
+
+def _ends(plane: Plane, crossed: TunnelEdges, known: Mapping[int, int]) -> IntArray:
+    """Regions (t, 2) at the upper and the lower end of tunnel edges; -1 = a pinched hand."""
+    above, below = crossed.rows[:, :4], crossed.rows[:, 4:8]
+    ends = np.full((len(crossed.rows), 2), -1, dtype=np.int64)
+    ends[:, 0] = [known[key] for key in plane.keys(above).tolist()]
+    landed = np.flatnonzero(below[:, 0] >= 0)
+    ends[landed, 1] = [known[key] for key in plane.keys(below[landed]).tolist()]
+    return ends
 
 
 def _with_pinch(
@@ -73,7 +85,7 @@ def _with_pinch(
     node = len(births)
     low = np.where(births <= pinch, 0.0, births)
     pinched = np.flatnonzero(low == 0.0)
-    out = np.column_stack([pinched, np.full(len(pinched), node), np.zeros(len(pinched), np.int64)])
+    out = np.column_stack([pinched, np.full(len(pinched), node)])
     rows = edges.copy()
     rows[rows[:, 1] < 0, 1] = node
     levels = np.concatenate([values, np.zeros(len(pinched))])

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.contact_space.kernels.explore import configuration, find_tunnel, longer
+from icage.contact_space.kernels.explore import configuration, longer
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -26,7 +26,14 @@ from icage.contact_space.kernels.rectangle import (
     seam_value,
     third_finger,
 )
-from icage.contact_space.kernels.shooting import LANDED, may_leave, touches
+from icage.contact_space.kernels.shooting import (
+    LANDED,
+    NO_TUNNEL,
+    may_leave,
+    piece_of,
+    shoot,
+    touches,
+)
 from icage.kernels.compiled import compiled
 
 
@@ -96,6 +103,24 @@ def holds(space, c, x, y):
 
 
 @compiled
+def find_tunnel(space, region, s, u, target, where):
+    """The tunnel edge of a least node: NO_TUNNEL, PINCHED or LANDED, and the finger kept.
+
+    Landed: ``target`` (4,) is the region, ``where`` (4,) as of ``shoot``.
+    """
+    i, j, k = region[0], region[1], region[2]
+    for keep in range(2):
+        ended = shoot(space, i, j, k, s, u, keep, target, where)
+        if ended == LANDED:
+            target[3] = piece_of(space, target[0], target[1], target[2], where[2], where[3])
+            if target[3] < 0:
+                continue
+        if ended != NO_TUNNEL:
+            return ended, keep
+    return NO_TUNNEL, 0
+
+
+@compiled
 def _one_may_leave(space, j, k, s, u):
     """Whether either finger of a pair may move straight at the other."""
     x1, y1 = finger_at(space, j, s)
@@ -107,8 +132,9 @@ def _one_may_leave(space, j, k, s, u):
 
 @compiled
 def all_tunnels(space):
-    """Tunnel edges that land: ints (t, 9) = region above, region below, finger kept; floats (t, 9)
-    = level, hand above, hand below. O(n^2) distances, then O(n) for each of the few candidates.
+    """All tunnel edges: ints (t, 9) = region above, region below (-1: a pinch), finger kept; floats
+    (t, 9) = level, hand above, hand below. O(n^2) distances, then O(n) for each of the few
+    candidates.
     """
     ints, floats = np.empty((64, 9), np.int64), np.empty((64, 9))
     corners, spare = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
@@ -150,18 +176,23 @@ def all_tunnels(space):
                         continue
                     region[0], region[1], region[2], region[3] = i, j, k, c
                     ended, keep = find_tunnel(space, region, s, u, target, where)
-                    if ended != LANDED:
+                    if ended == NO_TUNNEL:
                         continue
                     if t == len(ints):
                         ints, floats = longer(ints), longer(floats)
                     for b in range(4):
-                        ints[t, b], ints[t, 4 + b] = region[b], target[b]
+                        ints[t, b], ints[t, 4 + b] = region[b], -1
+                        floats[t, 5 + b] = 0.0
                     ints[t, 8] = keep
                     floats[t, 0] = scale_at(space, i, j, k, s, u)
                     configuration(space, i, j, k, s, u, floats[t], 1)
-                    configuration(
-                        space, target[0], target[1], target[2], where[0], where[1], floats[t], 5
-                    )
+                    if ended == LANDED:
+                        for b in range(4):
+                            ints[t, 4 + b] = target[b]
+                        configuration(
+                            space, target[0], target[1], target[2], where[0], where[1],
+                            floats[t], 5,
+                        )  # fmt: skip
                     t += 1
                     if not valley:
                         break  # on a diagonal either side will do
