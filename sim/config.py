@@ -29,16 +29,17 @@ class SimConfig:
     time_step: float = 1e-3
     """[s] The deepest penetration on impact is about speed times this."""
 
-    drive_force: float = 300.0
+    drive_force: float = 900.0
     """[mass diameter / s^2] Constant. Over ``object_damping`` it bounds the speed of the object, to
-    3 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3 / s 0.7e-3; the
-    tails of three-edge grasps grow longer in the same ratio."""
+    3.5 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3.5 / s 0.9e-3;
+    the tails of three-edge grasps grow longer in the same ratio."""
 
-    finger_damping: float = 600.0
-    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.5 / s."""
+    finger_damping: float = 1600.0
+    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.56 / s. At
+    0.7 / s impacts are up to 1.0e-3 deep, at 0.5 / s closings take a tenth longer."""
 
-    object_damping: float = 100.0
-    """[mass / s] A viscous table: the object forgets its speed within 10 ms, so that inertia does
+    object_damping: float = 260.0
+    """[mass / s] A viscous table: the object forgets its speed within 4 ms, so that inertia does
     not decide where a closing ends (at a tenth of this, objects ring about the target)."""
 
     finger_mass: float = 0.2
@@ -52,7 +53,7 @@ class SimConfig:
     """[time_step] Time constant of the linkage: shape error 1e-8 (6e-5 with MuJoCo's default)."""
 
     solimp: tuple[float, float, float, float, float] = (0.9999, 0.99999, 1e-4, 0.5, 2.0)
-    """MuJoCo's impedance, for a resting penetration of about 1e-6. Its defaults leave an angle
+    """MuJoCo's impedance, for a resting penetration below 1e-6. Its defaults leave an angle
     error of 1e-2 rad: useless here."""
 
     solver_iterations: int = 50
@@ -65,11 +66,11 @@ class SimConfig:
     """[1] Coulomb coefficient between fingers and object. With 0 contacts have no tangential
     rows at all (condim 1): the planner's statements are about frictionless closing."""
 
-    still_speed: float = 3e-6
+    still_speed: float = 1e-5
     """[diameter / s, rad / s] Slower than this is still. The tail of a three-edge grasp decays with
     a time constant of about 0.05 s, so what is left is below 1e-6."""
 
-    still_steps: int = 20
+    still_steps: int = 10
     """[step] ... for this many steps in a row, while two fingers press."""
 
     max_time: float = 8.0

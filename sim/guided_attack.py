@@ -27,19 +27,22 @@ TURN_LENGTH = 0.5
 
 @dataclass(frozen=True, slots=True)
 class GuidedPull:
-    """How the object is led. Forces in [mass diameter / s^2]."""
+    """How the object is led: as speeds, which the dampers of ``SimConfig`` turn into forces."""
 
-    speed: float = 0.25
+    pace: float = 0.25
     """[diameter / s] Of the carrot, at most."""
 
-    stiffness: float = 4e3
-    """[mass / s^2] Of the leading spring: the object lags 25 ms behind."""
+    rate: float = 40.0
+    """[1 / s] Of the leading spring: the object lags 25 ms behind."""
 
-    force: float = 50.0
-    """Largest force of the spring."""
+    speed: float = 0.5
+    """[diameter / s] Of the object, at most."""
 
-    grip: float = 150.0
-    """Largest force of the motor, root sum square of the fingers."""
+    grip: float = 0.25
+    """[diameter / s] Of the hand, at most, root sum square of the fingers."""
+
+    grip_rate: float = 13.0
+    """[1 / s] Of the hand on the way to the opening wanted."""
 
     lag: float = 0.012
     """[diameter] The carrot waits while the object is farther away than this, twice its usual lag.
@@ -49,8 +52,8 @@ class GuidedPull:
     patience: float = 0.6
     """[s] A carrot that has not moved for so long: the object is held."""
 
-    jitter: float = 10.0
-    """Largest random force, new every ``jitter_time`` seconds."""
+    jitter: float = 0.1
+    """[diameter / s] That the largest random force gives, new every ``jitter_time`` seconds."""
 
     jitter_time: float = 0.1
     """[s]"""
@@ -113,9 +116,10 @@ class GuidedDriver:
         count, pull = len(self.openings), self.pull
         pieces = math.ceil(pull.max_time / pull.jitter_time)
         jitter, pace = np.empty((count, pieces, 3)), np.empty(count)
+        push = pull.jitter * self.scene.config.object_damping
         for i, own in enumerate(self.rng.spawn(count)):
-            pace[i] = pull.speed * own.uniform(0.6, 1.0)
-            jitter[i] = pull.jitter * own.uniform(-1.0, 1.0, (pieces, 3)) * [1.0, 1.0, 0.3]
+            pace[i] = pull.pace * own.uniform(0.6, 1.0)
+            jitter[i] = push * own.uniform(-1.0, 1.0, (pieces, 3)) * [1.0, 1.0, 0.3]
         object.__setattr__(self, "_jitter", jitter)
         object.__setattr__(self, "_pace", pace)
         object.__setattr__(self, "_at", np.zeros(count))
@@ -131,11 +135,13 @@ class GuidedDriver:
     ) -> IntArray:
         """Advance the carrots, pull the objects after them."""
         pull, dt = self.pull, self.scene.config.time_step
+        damping = self.scene.config.object_damping
         goal = np.empty((len(ids), 4))
         lead: Callable[..., None] = _lead
         lead(
-            ids, qpos, self.path, dt, self._pace, pull.lag, pull.stiffness, pull.force,
-            self.scene.thing.gyration_squared, self._at, self._waited, goal, wrench,
+            ids, qpos, self.path, dt, self._pace, pull.lag, pull.rate * damping,
+            pull.speed * damping, self.scene.thing.gyration_squared, self._at, self._waited,
+            goal, wrench,
         )  # fmt: skip
         piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)
         wrench[ids] += self._jitter[ids, piece]
@@ -143,7 +149,7 @@ class GuidedDriver:
         wider = np.maximum(stop / self.path[:, 3].max(), 1.0)
         sigma = np.minimum(goal[:, 3] * wider, stop * (1.0 + 1e-3))
         sigma = np.where(goal[:, 3] * wider >= stop * (1.0 - 1e-3), stop * PUSH, sigma)
-        motor[ids] = opening_force(self.scene, sigma, qpos[ids], 2.0 * pull.stiffness, pull.grip)
+        motor[ids] = opening_force(self.scene, sigma, qpos[ids], pull.grip_rate, pull.grip)
         return ids[self._waited[ids] > pull.patience]
 
 

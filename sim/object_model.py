@@ -16,6 +16,9 @@ from sim.hand_model import FINGER_BIT, OBJECT_BIT, contact_parameters
 
 OBJECT_COLOUR = (0.86, 0.72, 0.45, 1.0)
 
+HALF_HEIGHT = 0.2
+"""[diameter] Of the pieces; contacts do not depend on it."""
+
 THINNEST_PIECE = 1e-8
 """[diameter] Pieces narrower than this are left out: MuJoCo stores mesh vertices in single
 precision, so they could not be told from a line."""
@@ -64,11 +67,10 @@ def polar_moment(vertices: FloatArray) -> float:
     return float((cross * ((a * a).sum(1) + (a * b).sum(1) + (b * b).sum(1))).sum() / 12.0)
 
 
-def add_object(spec: MjSpec, thing: NormalObject, finger_radius: float, config: SimConfig) -> None:
-    """Add the body ``object``: two slides, a hinge, one upright prism per convex piece.
+def add_object(spec: MjSpec, thing: NormalObject, config: SimConfig) -> None:
+    """Add the body ``object``: two slides, a hinge, one solid per convex piece.
 
-    The inertia is stated, not left to the pieces. The prisms reach past the finger spheres, so
-    that a sphere in their middle plane touches walls only.
+    The inertia is stated, not left to the pieces.
     """
     body = spec.worldbody.add_body(name="object")
     body.explicitinertial = True
@@ -80,14 +82,13 @@ def add_object(spec: MjSpec, thing: NormalObject, finger_radius: float, config: 
     body.add_joint(name="object_x", type=slide, axis=[1, 0, 0], damping=[damping, 0, 0])
     body.add_joint(name="object_y", type=slide, axis=[0, 1, 0], damping=[damping, 0, 0])
     body.add_joint(name="object_turn", type=hinge, axis=[0, 0, 1], damping=[damping * spin, 0, 0])
-    half_height = max(0.05, 2.0 * finger_radius)
     for number, piece in enumerate(thing.pieces):
         if _width(piece) < THINNEST_PIECE:
             continue
-        prism = extrude(piece, half_height)
+        solid = bipyramid(piece)
         mesh = spec.add_mesh(name=f"piece_{number}")
-        mesh.uservert = prism.vertices.ravel()
-        mesh.userface = prism.faces.ravel()
+        mesh.uservert = solid.vertices.ravel()
+        mesh.userface = solid.faces.ravel()
         mesh.inertia = mj.mjtMeshInertia.mjMESH_INERTIA_CONVEX
         geom = body.add_geom(
             name=f"object_piece_{number}",
@@ -101,12 +102,21 @@ def add_object(spec: MjSpec, thing: NormalObject, finger_radius: float, config: 
         contact_parameters(geom, config)
 
 
-def extrude(piece: FloatArray, half_height: float) -> trimesh.Trimesh:
-    """Upright prism over a convex polygon (k, 2), from -half_height to +half_height."""
-    fan = np.array([[0, k, k + 1] for k in range(1, len(piece) - 1)])
-    prism = trimesh.creation.extrude_triangulation(piece, fan, 2.0 * half_height)
-    prism.apply_translation([0.0, 0.0, -half_height])
-    return prism
+def bipyramid(piece: FloatArray) -> trimesh.Trimesh:
+    """Solid that cuts the plane z = 0 in a convex polygon (k, 2), counterclockwise: two apexes.
+
+    It is symmetric in that plane, so the point of it nearest to a sphere's centre in the plane lies
+    in the plane too: contacts are those of the polygon, as with an upright prism, from half the
+    vertices and in fewer steps of the engine's search (a bare step of the saw: 24 us, not 30).
+    """
+    k, centre = len(piece), piece.mean(0)
+    rim = np.column_stack([piece, np.zeros(k)])
+    first = np.arange(k)
+    second = (first + 1) % k
+    above = np.column_stack([first, second, np.full(k, k)])
+    below = np.column_stack([second, first, np.full(k, k + 1)])
+    apexes = [[*centre, HALF_HEIGHT], [*centre, -HALF_HEIGHT]]
+    return trimesh.Trimesh(np.vstack([rim, apexes]), np.vstack([above, below]), process=False)
 
 
 def _width(piece: FloatArray) -> float:

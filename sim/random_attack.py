@@ -20,10 +20,10 @@ PUSH = 1.003
 
 @dataclass(frozen=True, slots=True)
 class RandomPull:
-    """How a random attack pulls. Forces in [mass diameter / s^2], time in [s]."""
+    """How a random attack pulls: as speeds, which the dampers of ``SimConfig`` turn into forces."""
 
-    force: float = 50.0
-    """Largest force; over the object's damping a speed of 0.5 / s."""
+    speed: float = 0.5
+    """[diameter / s] The free object's, under the largest force."""
 
     turn: float = 0.15
     """[diameter] Largest torque over the largest force: the rim about as fast as the middle."""
@@ -49,11 +49,11 @@ class RandomPull:
     wander_least: float = 0.7
     """[1] Smallest opening it then moves to, over the largest."""
 
-    stiffness: float = 5e3
-    """[mass / s^2] Of the hand on the way to it, per root sum square of finger travel."""
+    rate: float = 8.0
+    """[1 / s] Of the hand on the way to it."""
 
-    grip: float = 60.0
-    """Largest force of the motor, root sum square of the fingers: opening speed 0.1 / s."""
+    grip: float = 0.1
+    """[diameter / s] Its speed at most, root sum square of the fingers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,15 +70,16 @@ class RandomDriver:
 
     def __post_init__(self) -> None:
         pull, count = self.pull, len(self.openings)
+        force = pull.speed * self.scene.config.object_damping
         pieces = math.ceil(pull.duration / pull.piece)
         wrench = np.empty((count, pieces, 3))
         kicked = np.empty((count, pieces))
         target = np.empty((count, pieces))
         for i, own in enumerate(self.rng.spawn(count)):
             way = own.uniform(0.0, 2.0 * np.pi, pieces)
-            size = pull.force * np.sqrt(own.uniform(0.0, 1.0, pieces))
+            size = force * np.sqrt(own.uniform(0.0, 1.0, pieces))
             wrench[i, :, 0], wrench[i, :, 1] = size * np.cos(way), size * np.sin(way)
-            wrench[i, :, 2] = pull.force * pull.turn * own.uniform(-1.0, 1.0, pieces)
+            wrench[i, :, 2] = force * pull.turn * own.uniform(-1.0, 1.0, pieces)
             kicked[i] = np.where(own.random(pieces) < pull.kick_share, pull.kick, 1.0)
             smaller = own.uniform(pull.wander_least, 1.0, pieces)
             target[i] = np.where(own.random(pieces) < pull.wander_share, smaller, PUSH)
@@ -102,16 +103,19 @@ class RandomDriver:
         if begun < self.pull.kick_time:
             wrench[ids] *= self._kicked[ids, piece, None]
         motor[ids] = opening_force(
-            self.scene, self._target[ids, piece], qpos[ids], self.pull.stiffness, self.pull.grip
+            self.scene, self._target[ids, piece], qpos[ids], self.pull.rate, self.pull.grip
         )
         return ids[:0]
 
 
 def opening_force(
-    scene: Scene, sigma: FloatArray, qpos: FloatArray, stiffness: float, force: float
+    scene: Scene, sigma: FloatArray, qpos: FloatArray, rate: float, speed: float
 ) -> FloatArray:
-    """Motor control (N,) towards sigma (N,), ``force`` at most (root sum square of the fingers)."""
-    spread = scene.kinematics.spread
-    limit = force * spread
-    wanted = stiffness * spread * spread * (sigma - scene.sigma(qpos))
+    """Motor control (N,) that brings the free hand to sigma (N,).
+
+    ``rate`` [1 / s] of its approach, ``speed`` [diameter / s] at most, root sum square of fingers.
+    """
+    spread, damping = scene.kinematics.spread, scene.config.finger_damping
+    limit = speed * damping * spread
+    wanted = rate * damping * spread * spread * (sigma - scene.sigma(qpos))
     return np.clip(wanted, -limit, limit)

@@ -52,7 +52,7 @@ class Scene:
         radius = self.finger_radius / self.outline.diameter
         spec = build_hand(self.hand, radius, self.config, looks)
         spec.modelname = "icage_scene"
-        add_object(spec, self.thing, radius, self.config)
+        add_object(spec, self.thing, self.config)
         return spec
 
     @property

@@ -100,8 +100,9 @@ def test_free_speed_and_force_limit_do_not_depend_on_the_labels() -> None:
         data.qpos[:] = kinematics.lengths / kinematics.spread
         data.ctrl[0] = -1e9  # the limit, not this, counts
         mujoco.mj_step(model, data, 50)
-        assert np.linalg.norm(data.qfrc_actuator) == pytest.approx(300.0, rel=1e-9)
-        assert np.linalg.norm(data.qvel) == pytest.approx(SimConfig().free_speed, rel=1e-3)
+        config = SimConfig()
+        assert np.linalg.norm(data.qfrc_actuator) == pytest.approx(config.drive_force, rel=1e-9)
+        assert np.linalg.norm(data.qvel) == pytest.approx(config.free_speed, rel=1e-3)
 
 
 def test_point_fingers_are_refused() -> None:

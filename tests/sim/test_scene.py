@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from icage.hand import HandShape
 from icage.outline import Outline
 from sim.config import SimConfig
-from sim.object_model import NormalObject, extrude, polar_moment
+from sim.object_model import HALF_HEIGHT, NormalObject, bipyramid, polar_moment
 from sim.scene import Scene
-from tests.sim.grasps import KnownGrasp, case_outline, l_shape, t_shape, triangle
+from tests.sim.grasps import KnownGrasp, case_outline, l_shape, shipped, t_shape, triangle
 
 GRASPS = [t_shape(), l_shape(), triangle()]
 SIZES = {
@@ -68,12 +68,39 @@ def test_compiled_object_has_the_stated_inertia() -> None:
     np.testing.assert_allclose(body.ipos, 0.0, atol=1e-15)
 
 
-def test_prism_has_the_right_volume() -> None:
+def test_solid_cuts_the_plane_in_its_piece() -> None:
     piece = np.array([[0.0, 0.0], [1.0, 0.0], [1.2, 0.7], [0.4, 1.0]])
-    prism = extrude(piece, 0.05)
-    assert prism.is_watertight
-    assert prism.volume == pytest.approx(0.1 * shapely.Polygon(piece).area, rel=1e-12)
-    np.testing.assert_allclose(prism.bounds[:, 2], [-0.05, 0.05])
+    solid = bipyramid(piece)
+    assert solid.is_watertight
+    assert solid.is_convex
+    area = shapely.Polygon(piece).area
+    assert solid.volume == pytest.approx(2.0 * HALF_HEIGHT * area / 3.0, rel=1e-12)
+    np.testing.assert_allclose(solid.bounds[:, 2], [-HALF_HEIGHT, HALF_HEIGHT])
+    middle = solid.vertices[solid.vertices[:, 2] == 0.0]
+    np.testing.assert_array_equal(middle[:, :2], piece)
+
+
+def test_the_engine_measures_the_distance_in_the_plane() -> None:
+    rng = np.random.default_rng(5)
+    scene = shipped("saw").scene()
+    data = mujoco.MjData(scene.model)
+    outline = shapely.Polygon(scene.thing.vertices)
+    pieces = [
+        g for g in range(scene.model.ngeom) if scene.model.geom(g).name.startswith("object_piece")
+    ]
+    finger = scene.model.geom("finger_1_tip").id
+    found = 0
+    for row in rng.uniform([-0.5, -0.4], [0.5, 0.4], (200, 2)):
+        data.qpos[:] = 0.0
+        data.qpos[3:5] = -row  # the object moves, finger 1 stays at the origin
+        mujoco.mj_kinematics(scene.model, data)
+        true = outline.distance(shapely.Point(row)) - scene.finger_radius / scene.thing.unit
+        if outline.contains(shapely.Point(row)):
+            continue
+        seen = min(mujoco.mj_geomDistance(scene.model, data, finger, g, 2.0, None) for g in pieces)
+        assert seen == pytest.approx(true, abs=3e-7)  # vertices are stored in single precision
+        found += 1
+    assert found > 50
 
 
 def test_slivers_thinner_than_the_engine_can_tell_do_not_stop_it() -> None:
