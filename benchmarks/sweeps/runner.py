@@ -9,8 +9,10 @@ import platform
 import time
 from collections import Counter
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -55,17 +57,38 @@ def options(description: str, count: int) -> argparse.ArgumentParser:
     parser.add_argument("--seed", type=int, default=2018)
     parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
     parser.add_argument("--json", type=Path, help="write the report here")
+    parser.add_argument(
+        "--log", type=Path, help="a line for each target that is done; if it exists, go on there"
+    )
     return parser
 
 
 def run(judge: Judge, chosen: argparse.Namespace) -> list[Outcome]:
     """Outcomes of all targets, in order."""
-    numbers = range(chosen.first, chosen.first + chosen.count)
-    jobs = [(judge, chosen.seed, n) for n in numbers]
-    if chosen.processes == 1:
-        return [_call(job) for job in tqdm(jobs, mininterval=5.0)]
-    with multiprocessing.get_context("spawn").Pool(chosen.processes) as pool:
-        return list(tqdm(pool.imap(_call, jobs, chunksize=4), total=len(jobs), mininterval=5.0))
+    wanted = range(chosen.first, chosen.first + chosen.count)
+    done = {o.number: o for o in _logged(chosen.log) if o.number in wanted}
+    jobs = [(judge, chosen.seed, n) for n in wanted if n not in done]
+    with ExitStack() as stack:
+        log = stack.enter_context(chosen.log.open("w")) if chosen.log else None
+        if chosen.processes == 1:
+            found = map(_call, jobs)
+        else:
+            pool = multiprocessing.get_context("spawn").Pool(chosen.processes)
+            found = stack.enter_context(pool).imap(_call, jobs, chunksize=4)
+        again = list(done.values())
+        for outcome in chain(again, tqdm(found, total=len(jobs), mininterval=5.0)):
+            done[outcome.number] = outcome
+            if log is not None:
+                log.write(json.dumps(asdict(outcome)) + "\n")
+                log.flush()
+    return [done[n] for n in wanted]
+
+
+def _logged(log: Path | None) -> list[Outcome]:
+    """What an earlier run left; a line cut short by a kill is no outcome."""
+    if log is None or not log.exists():
+        return []
+    return [Outcome(**json.loads(x)) for x in log.read_text().splitlines(True) if x[-1:] == "\n"]
 
 
 def _call(job: tuple[Judge, int, int]) -> Outcome:
