@@ -1,8 +1,9 @@
-"""Tables of where the guarantee ends: friction, closing speed, time step (docs/physics.md).
+"""Tables of where the guarantee ends: friction, speed, time step, inertia, compliance.
 
     python3 -m experiments.limits CASE [TRIALS]
 
-prints both for starts drawn from the guaranteed set with seed 0; point fingers become discs.
+prints the tables of docs/physics.md for starts drawn from the guaranteed set with seed 0; point
+fingers become discs.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from experiments.starts import draw_starts
 from sim.config import SimConfig
 from sim.contact_types import supports
 from sim.friction import friction_table
-from sim.quasi_static import SPEEDS, STEPS, compare
+from sim.quasi_static import CHANGES, compare
 from sim.scene import Scene
 
 FRICTION_TIME: Final = 1.0
@@ -44,11 +45,12 @@ def tables(name: str, trials: int, seed: int = 0) -> Iterator[str]:
                 f"{row.mu:<5g}  {row.on_edges:>8d}  {row.worst:13.5f}  {row.bound:8.5f}  "
                 f"{row.drift:.1e}{'' if row.holds else '  OVER'}"
             )
-    yield "speed  step   changed  timed out  position  angle    deepest"
-    variants = [*((speed, 1.0) for speed in SPEEDS), *((1.0, step) for step in STEPS)]
-    for one in compare(scene, cage.grasps, starts, variants):
+    yield "speed  step  inertia  yielding  changed  timed out  position  angle    deepest"
+    for one in compare(scene, cage.grasps, starts, CHANGES):
+        what = one.change
         yield (
-            f"{one.speed:<5g}  {one.step:<5g}  {one.changed:>7d}  {one.timed_out:>9d}  "
+            f"{what.speed:<5g}  {what.step:<4g}  {what.inertia:<7g}  {what.yielding:<8g}  "
+            f"{one.changed:>7d}  {one.timed_out:>9d}  "
             f"{one.position:.1e}   {one.angle:.1e}  {one.penetration:.1e}"
         )
 

@@ -31,26 +31,36 @@ class SimConfig:
 
     drive_force: float = 900.0
     """[mass diameter / s^2] Constant. Over ``object_damping`` it bounds the speed of the object, to
-    3.5 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3.5 / s 0.9e-3;
-    the tails of three-edge grasps grow longer in the same ratio."""
+    3 / s: at 10 / s the impacts of a spinning object were up to 1.4e-3 deep, at 3 / s 0.8e-3; the
+    tails of three-edge grasps grow longer in the same ratio."""
 
-    finger_damping: float = 1600.0
-    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.56 / s. At
-    0.7 / s impacts are up to 1.0e-3 deep, at 0.5 / s closings take a tenth longer."""
+    finger_damping: float = 1800.0
+    """[mass / s] Per finger slide; with the force the speed of the free fingers, 0.5 / s. At
+    0.7 / s impacts are up to 1.0e-3 deep."""
 
-    object_damping: float = 260.0
-    """[mass / s] A viscous table: the object forgets its speed within 4 ms, so that inertia does
+    object_damping: float = 300.0
+    """[mass / s] A viscous table: the object forgets its speed within 3 ms, so that inertia does
     not decide where a closing ends (at a tenth of this, objects ring about the target)."""
 
     finger_mass: float = 0.2
-    """[mass] Irrelevant next to the damping; of the order of the object for a good condition."""
+    """[mass] Irrelevant next to the damping (a finger forgets its speed in 0.1 ms); of the order of
+    the object for a good condition."""
 
-    contact_solref: float = 1.0
+    contact_solref: float = 0.5
     """[time_step] Time constant of a contact. Stiffer than MuJoCo's advice of 2, which the
     ``discrete`` integrator allows: 5 steps would already give 1.3e-3 of penetration."""
 
+    contact_damping: float = 2.0
+    """[1] Damping ratio of a contact. With 1 (and a time constant of 1 step) some contacts rattle:
+    lost for a step, then back, up to 7e-4 deep, for ever (with friction, with half the step, with
+    heavy objects)."""
+
     linkage_solref: float = 0.01
     """[time_step] Time constant of the linkage: shape error 1e-8 (6e-5 with MuJoCo's default)."""
+
+    linkage_compliance: float = 0.0
+    """[s^2 / mass] How far a finger yields from its place in the similar triangle, per force. 0:
+    rigid; above 0 three springs of stiffness 1 / this are the linkage (``sim.hand_model``)."""
 
     solimp: tuple[float, float, float, float, float] = (0.9999, 0.99999, 1e-4, 0.5, 2.0)
     """MuJoCo's impedance, for a resting penetration below 1e-6. Its defaults leave an angle
@@ -84,8 +94,15 @@ class SimConfig:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
-        if not (math.isfinite(self.friction) and self.friction >= 0.0):
-            raise InputError(f"SimConfig.friction is {self.friction}; >= 0 is needed")
+        for name in ("friction", "linkage_compliance"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"SimConfig.{name} is {value}; >= 0 is needed")
+
+    @property
+    def solref(self) -> tuple[float, float]:
+        """[s], [1] MuJoCo's reference of a contact: time constant and damping ratio."""
+        return self.contact_solref * self.time_step, self.contact_damping
 
     @property
     def free_speed(self) -> float:

@@ -10,6 +10,13 @@ so three slides along the unit vectors u_k and the *linkage* q_k / L_k = q_j / L
 similar to itself. The drive is a fixed tendon over the slides with the coefficients
 L_k / sum L_j^2: on the linkage its length is sigma. The only motor pulls on it. The tendon alone
 would be a differential and lose the shape; the linkage alone would not know of a cable.
+
+A compliant linkage is springs of one stiffness K on how far each finger is off its place,
+
+    e_k = q_k - L_k sigma = sum_j P_kj q_j,    P = 1 - L L^T / sum L_j^2
+
+P projects, so the forces on the slides are -K P q = -K e: they never act on sigma, no finger is
+special, and a push F on the slides moves the fingers by P F / K from their places.
 """
 
 from __future__ import annotations
@@ -31,6 +38,10 @@ fingers may pass each other too; the centres meet only when the hand is pinched.
 
 FINGER_COLOURS = ((0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.0, 0.620, 0.451))
 """One colour per finger, in every picture: distinct to colour-blind readers."""
+
+_REST_LENGTH = 1e-12
+"""[diameter] Of the linkage's springs. Not 0: the engine takes a spring that has exactly its rest
+length for one without stiffness, and the first push would throw the fingers far off."""
 
 _CABLE_DEPTH, _PALM_DEPTH = -0.09, -0.13
 """[diameter] Where the drawn parts lie: below the object, which is seen from above."""
@@ -81,6 +92,11 @@ class HandKinematics:
         """L_k / sum L_j^2, (3,): the tendon's length over the slides is then sigma."""
         return self.lengths / self.spread**2
 
+    @property
+    def shape_projector(self) -> FloatArray:
+        """P, (3, 3): slides to how far each finger is off its place in the similar triangle."""
+        return np.eye(3) - np.outer(self.lengths, self.tendon_coefficients)
+
 
 def build_hand(
     shape: HandShape, finger_radius: float, config: SimConfig, looks: bool = True
@@ -107,7 +123,10 @@ def build_hand(
     palm = spec.worldbody.add_body(name="palm", pos=[0.0, 0.0, 0.0])
     for k in range(3):
         _add_finger(palm, k, kinematics, finger_radius, config)
-    _add_linkage(spec, kinematics, config)
+    if config.linkage_compliance > 0.0:
+        _add_springs(spec, kinematics, config)
+    else:
+        _add_linkage(spec, kinematics, config)
     _add_drive(spec, kinematics, config)
     if looks:
         _draw_palm(palm, kinematics, finger_radius)
@@ -121,7 +140,7 @@ def contact_parameters(geom: MjGeom, config: SimConfig) -> None:
 
     Frictionless contacts are condim 1 on both geoms: a pair takes the larger of the two.
     """
-    geom.solref = [config.contact_solref * config.time_step, 1.0]
+    geom.solref = list(config.solref)
     geom.solimp = list(config.solimp)
     geom.condim = 3 if config.friction > 0.0 else 1
     geom.friction = [config.friction, 0.0, 0.0]
@@ -203,6 +222,19 @@ def _add_linkage(spec: MjSpec, kinematics: HandKinematics, config: SimConfig) ->
         link.data = data
         link.solref = [config.linkage_solref * config.time_step, 1.0]
         link.solimp = list(config.solimp)
+
+
+def _add_springs(spec: MjSpec, kinematics: HandKinematics, config: SimConfig) -> None:
+    """The compliant linkage: a sprung tendon of length e_k per finger.
+
+    ``discrete`` takes springs implicitly, in M + h D + h^2 K, so any stiffness is stable.
+    """
+    for k, row in enumerate(kinematics.shape_projector.tolist()):
+        spring = spec.add_tendon(name=f"linkage_{k + 1}")
+        for j, coefficient in enumerate(row):
+            spring.wrap_joint(f"finger_{j + 1}_slide", coefficient)
+        spring.stiffness = [1.0 / config.linkage_compliance, 0.0, 0.0]
+        spring.springlength = [_REST_LENGTH, _REST_LENGTH]
 
 
 def _add_drive(spec: MjSpec, kinematics: HandKinematics, config: SimConfig) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import shapely
@@ -13,10 +12,9 @@ import models
 from icage.arrays import FloatArray
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from models import CASES
 from sim.config import SimConfig
 from sim.scene import Scene
-
-CASES = Path(__file__).parents[1] / "cases"
 
 
 @dataclass(frozen=True)

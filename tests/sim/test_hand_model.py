@@ -90,6 +90,57 @@ def test_tendon_alone_is_a_differential_and_loses_the_shape() -> None:
     assert np.abs(data.qpos - slides(shape, sigma)).max() > 1e-2
 
 
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("compliance", [1e-5, 1e-7, 1e-9])
+def test_a_compliant_linkage_yields_by_force_over_stiffness(
+    shape: HandShape, compliance: float
+) -> None:
+    model = build_hand(shape, 0.03, SimConfig(linkage_compliance=compliance), looks=False).compile()
+    assert model.nu == 1
+    assert model.neq == 0
+    assert [model.tendon(k).name for k in range(model.ntendon)] == [
+        *(f"linkage_{k}" for k in (1, 2, 3)),
+        "drive",
+    ]
+    data = mujoco.MjData(model)
+    data.qpos[:] = slides(shape, 0.5)
+    data.ctrl[0] = -300.0
+    data.qfrc_applied[:] = [400.0, -30.0, 70.0]
+    mujoco.mj_step(model, data, 400)
+    mujoco.mj_forward(model, data)
+    off = data.qpos - slides(shape, float(data.ten_length[model.tendon("drive").id]))
+    np.testing.assert_allclose(data.ten_length[:3], off, rtol=1e-6, atol=1e-15)
+    along = HandKinematics(shape).lengths / HandKinematics(shape).spread
+    push = data.qfrc_applied - along * (along @ data.qfrc_applied)
+    np.testing.assert_allclose(off, compliance * push, rtol=1e-4, atol=1e-6 * abs(off).max())
+
+
+def test_yield_of_an_equilateral_hand_by_hand() -> None:
+    """A push F on finger 1: it yields 2/3 F / K, and the others 1/3 F / K the other way."""
+    shape = HandShape.from_angles_deg(60.0, 120.0)
+    assert HandKinematics(shape).shape_projector[0] == pytest.approx([2 / 3, -1 / 3, -1 / 3])
+    model = model_of(shape, linkage_compliance=1e-6)
+    data = mujoco.MjData(model)
+    data.qpos[:] = slides(shape, 0.5)
+    data.qfrc_applied[0] = 300.0
+    mujoco.mj_step(model, data, 200)
+    mujoco.mj_forward(model, data)
+    assert data.ten_length[:3] == pytest.approx([2e-4, -1e-4, -1e-4], rel=1e-6)
+
+
+def test_the_linkage_is_rigid_unless_told_otherwise() -> None:
+    model, same = model_of(SHAPES[0]), model_of(SHAPES[0], linkage_compliance=0.0)
+    assert (model.neq, model.ntendon) == (2, 2)  # the drive, and the cable to be seen
+    assert not model.tendon_stiffness.any()
+    ends: list[bytes] = []
+    for one in (model, same):
+        data = mujoco.MjData(one)
+        data.qpos[:], data.ctrl[0], data.qfrc_applied[0] = slides(SHAPES[0], 0.5), -300.0, 400.0
+        mujoco.mj_step(one, data, 300)
+        ends.append(data.qpos.tobytes())
+    assert ends[0] == ends[1]
+
+
 def test_free_speed_and_force_limit_do_not_depend_on_the_labels() -> None:
     shape = HandShape.from_angles_deg(20.0, 100.0)
     for first in range(3):
@@ -120,7 +171,16 @@ def test_shipped_mjcf_is_up_to_date_and_loads() -> None:
     assert data.ten_length[model.tendon("drive").id] == pytest.approx(0.3, abs=1e-6)
 
 
-@pytest.mark.parametrize("change", [{"time_step": 0.0}, {"drive_force": -1.0}, {"friction": -0.1}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"time_step": 0.0},
+        {"drive_force": -1.0},
+        {"friction": -0.1},
+        {"linkage_compliance": -1e-9},
+        {"linkage_compliance": float("inf")},
+    ],
+)
 def test_impossible_settings_are_refused(change: dict[str, float]) -> None:
     with pytest.raises(InputError, match=next(iter(change))):
         SimConfig(**change)  # type: ignore[arg-type]

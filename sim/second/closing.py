@@ -1,0 +1,55 @@
+"""Closings in the second engine, with the eyes and the judge of the first."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from icage.arrays import FloatArray
+from sim.approach import approached
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+from sim.second.world import SecondConfig, World
+from sim.watch import DIVERGED, Watch
+
+
+def close_many_second(
+    scene: Scene, starts: FloatArray, config: SecondConfig | None = None
+) -> ClosingOutcomes:
+    """Close from every start (N, 4) = x, y, theta, sigma in the object's frame, one by one.
+
+    The same start, motor, watch and end of a closing as ``sim.batch.close_many``.
+
+    Raises
+    ------
+    InputError:
+        pymunk is not installed, or the scene has friction or a linkage that yields.
+    """
+    rows = np.asarray(starts, dtype=np.float64).reshape(-1, 4)
+    begin = scene.start_positions(rows)
+    watch = Watch.over(scene, begin)
+    states = np.zeros((len(rows), 12))
+    states[:, :6] = approached(scene, begin)
+    forces, contacts = np.zeros((len(rows), 3)), np.zeros(len(rows), dtype=np.int64)
+    for i in range(len(rows)):
+        only = np.array([i])
+        if not np.isfinite(states[i]).all():
+            watch.diverged(only)
+            continue
+        world = World(scene, states[i, :6], config or SecondConfig())
+        while not watch.ending[i]:
+            states[i] = world.step(scene.closing_force)
+            watch.observe(only, states[:, :6], states[:, 6:])
+        if watch.ending[i] != DIVERGED:
+            forces[i], contacts[i] = world.press()
+    return ClosingOutcomes(
+        start=np.array(rows),
+        end=scene.placements(states[:, :6]),
+        ending=watch.ending.copy(),
+        steps=watch.steps.copy(),
+        penetration_max=watch.penetration_max.copy(),
+        penetration_rest=watch.penetration_rest.copy(),
+        shape_error_max=watch.shape_error_max.copy(),
+        sigma_rise_max=watch.sigma_rise_max.copy(),
+        finger_forces=forces,
+        contacts=contacts,
+    )
