@@ -24,7 +24,7 @@ from icage.planner import plan
 
 ROOT = Path(__file__).parents[1]
 FILES = [
-    *sorted((ROOT / "tests" / "cases").glob("*.json")),
+    *sorted((ROOT / "models" / "cases").glob("*.json")),
     *sorted((ROOT / "models" / "objects").glob("*/cases/*.json")),
 ]
 

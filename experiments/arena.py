@@ -7,9 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from experiments.disc_case import PhysicalCase
 from icage.arrays import FloatArray
-from icage.cage import Cage
-from icage.formats.case_json import Case
 from sim.attack import HELD, Attacks, attack
 from sim.config import SimConfig
 from sim.engine import MjModel
@@ -46,10 +45,9 @@ class Arena:
     threads: int
 
     @classmethod
-    def of(cls, case: Case, cage: Cage, below: float, threads: int) -> Arena:
+    def of(cls, physical: PhysicalCase, below: float, threads: int) -> Arena:
         """The arena of a cage; ``below`` [unit] is the level below sigma_max."""
-        config = SimConfig(time_step=TIME_STEP)
-        scene = Scene(case.outline, cage.hand, case.finger_radius, config)
+        cage, scene = physical.cage, physical.world.scene(SimConfig(time_step=TIME_STEP))
         target = scene.start_positions(cage.target_placement.as_array())[0]
         if cage.escape_path is None:
             return cls(scene, held_model(scene), target, target, None, threads)

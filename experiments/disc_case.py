@@ -3,13 +3,15 @@
 Same hand shape, and as target the least opening of that hand among the edges that the point
 fingers touched, each moved outwards by the radius: sigma = |w| is convex and the edges are half
 planes of (d, w), so closing the hand there from the original pose ends in that minimum. The derived
-case is planned afresh, and only with that plan is physics compared.
+case is planned afresh, and only with that plan is physics compared. Where no disc can stand at the
+target, another grasp of the same hand is taken instead, and said so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, Final
 
 import numpy as np
@@ -20,11 +22,20 @@ from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.hand import HandShape
+from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline
 from icage.planner import plan
+from sim.config import SimConfig
+from sim.scene import Scene
 
 RADII: Final = (0.02, 0.01, 0.03)
 """[diameter] Of the discs that point fingers become: the first that leaves a cage."""
+
+WIDE: Final = 1.01
+"""[1] sigma_max / sigma_0 that another grasp must have to stand in for a target that is gone."""
+
+MOST_OTHERS: Final = 60
+"""Other grasps tried at most."""
 
 _TOUCHING: Final = 1e-6
 """[diameter] A point finger this near an edge is on it."""
@@ -39,12 +50,51 @@ class DerivedCaseError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
+class World:
+    """What physics simulates: the plan's object, hand and discs, unless a test plants a fault."""
+
+    outline: Outline
+    hand: HandShape
+    finger_radius: float
+
+    def scene(self, config: SimConfig | None = None) -> Scene:
+        """Hand and object, compiled."""
+        return Scene(self.outline, self.hand, self.finger_radius, config or SimConfig())
+
+
+@dataclass(frozen=True, slots=True)
 class PhysicalCase:
-    """A case with discs, its cage, and whether it was derived from point fingers."""
+    """A case with discs, its cage, and the world in which the cage is tested.
+
+    Attributes
+    ----------
+    derived:
+        Whether the discs stand for point fingers.
+    another:
+        Whether its target is another grasp of the hand, no disc fitting at the case's own.
+    """
 
     case: Case
     cage: Cage
     derived: bool
+    another: bool
+    world: World
+
+    @property
+    def origin(self) -> str:
+        """Where the case comes from, in words."""
+        if not self.derived:
+            return "as given"
+        target = "at another grasp of that hand" if self.another else "where this hand closes"
+        share = self.case.finger_radius / self.case.outline.diameter
+        return f"derived from point fingers: discs of {100.0 * share:.3g} %, {target}"
+
+    @classmethod
+    def of(
+        cls, case: Case, cage: Cage, *, derived: bool = False, another: bool = False
+    ) -> PhysicalCase:
+        """In the world that was planned."""
+        return cls(case, cage, derived, another, World(case.outline, cage.hand, case.finger_radius))
 
 
 def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
@@ -53,23 +103,43 @@ def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
     Raises
     ------
     DerivedCaseError:
-        The derived target is gone for every radius.
+        Neither the target nor another grasp of the hand is left for any radius.
     InputError:
         The case is not a cage: there is nothing to close into.
     """
     if case.finger_radius > 0.0:
-        return PhysicalCase(case, _cage(case), derived=False)
+        return PhysicalCase.of(case, _cage(case))
+    _cage(case)
     reasons: list[str] = []
     for radius in radii:
         try:
             done = with_discs(case, radius * case.outline.diameter)
-            return PhysicalCase(done, _cage(done), derived=True)
+            return PhysicalCase.of(done, _cage(done), derived=True)
         except InputError as error:
             reasons.append(str(error))
+    found = _another(case, radii)
+    if found is not None:
+        return found
     raise DerivedCaseError(
         f"{case.name} has point fingers, and discs find no cage near their grasp "
-        f"({reasons[0]}); give the case a finger_radius and a target of its own"
+        f"({reasons[0]}), nor near another of that hand; give the case a finger_radius and a "
+        "target of its own"
     )
+
+
+def _another(case: Case, radii: Sequence[float]) -> PhysicalCase | None:
+    """The first other grasp of the same hand, by size, at which discs find a wide enough cage."""
+    hand = HandShape.from_contacts(case.contacts)
+    others = grasps_of_hand(case.outline, hand)[:MOST_OTHERS]
+    for contacts, radius in product(others, radii):
+        try:
+            done = with_discs(replace(case, contacts=contacts), radius * case.outline.diameter)
+            cage = _cage(done)
+        except InputError:
+            continue
+        if cage.sigma_max is None or cage.sigma_max >= WIDE * cage.sigma_0:
+            return PhysicalCase.of(done, cage, derived=True, another=True)
+    return None
 
 
 def _cage(case: Case) -> Cage:

@@ -8,15 +8,16 @@ is the safe end of the planner's bracket below, its upper end above.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
 from experiments.arena import Arena
-from experiments.derived import DerivedError, derived_case
+from experiments.disc_case import PhysicalCase, physical_case
 from icage.cage import Cage
+from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan
 from sim.attack import Attacks
@@ -57,8 +58,8 @@ class Escape:
 
     Attributes
     ----------
-    case, cage:
-        Of the derived case, if ``derived``.
+    physical:
+        What was attacked: the case, or what was derived from it.
     arena:
         None if nothing was attacked.
     below, above:
@@ -67,9 +68,7 @@ class Escape:
         What did not hold, a plain sentence each.
     """
 
-    case: Case
-    derived: bool
-    cage: Cage
+    physical: PhysicalCase
     attacks: int
     seed: int
     verdict: Verdict = "ok"
@@ -79,6 +78,16 @@ class Escape:
     above: float | None = None
     assaults: tuple[Assault, ...] = ()
     failures: tuple[str, ...] = ()
+
+    @property
+    def case(self) -> Case:
+        """With discs."""
+        return self.physical.case
+
+    @property
+    def cage(self) -> Cage:
+        """Of ``case``."""
+        return self.physical.cage
 
     @property
     def penetration_max(self) -> float:
@@ -112,62 +121,76 @@ def wilson_upper(successes: int, trials: int) -> float:
 
 
 def escape(case: Case, attacks: int, seed: int, threads: int, report: Report) -> Escape:
-    """Plan one case, derive discs for point fingers, attack and measure.
+    """Plan one case, derive discs for point fingers, attack and measure with every attacker.
 
     The same for any number of threads: every attack has random numbers of its own.
     """
-    rng = np.random.default_rng([seed, 4])
-    for_derived, for_attacks = rng.spawn(2)
-    derived = not case.finger_radius > 0.0
     report("planning", 0, 1)
     cage = plan(case.outline, case.contacts, case.finger_radius)
-    blank = Escape(case, False, cage, attacks, seed)
     if cage.verdict == "not_a_cage":
-        return replace(blank, why=f"not_a_cage ({cage.why}): nothing to attack")
-    if derived:
-        try:
-            case = derived_case(case, for_derived)
-        except DerivedError as error:
-            return replace(blank, verdict="no_derived_case", why=str(error))
-        cage = plan(case.outline, case.contacts, case.finger_radius)
-        blank = Escape(case, True, cage, attacks, seed)
-        if cage.verdict == "not_a_cage":
-            why = f"the derived case is not_a_cage ({cage.why})"
-            return replace(blank, verdict="no_derived_case", why=why)
+        why = f"not_a_cage ({cage.why}): nothing to attack"
+        return Escape(PhysicalCase.of(case, cage), attacks, seed, why=why)
+    try:
+        physical = physical_case(case)
+    except InputError as error:
+        blank = Escape(PhysicalCase.of(case, cage), attacks, seed)
+        return replace(blank, verdict="no_derived_case", why=str(error))
     report("planning", 1, 1)
-    return judged(_attacked(blank, for_attacks, threads, report))
+    return attacked(physical, attacks, seed, threads, report)
 
 
-def _attacked(blank: Escape, rng: np.random.Generator, threads: int, report: Report) -> Escape:
-    """All attacks on a planned case."""
+def attacked(
+    physical: PhysicalCase,
+    attacks: int,
+    seed: int,
+    threads: int,
+    report: Report,
+    measuring: Sequence[str] = ATTACKERS,
+) -> Escape:
+    """All attacks on a planned case; those in ``measuring`` also measure sigma_max."""
+    rng = np.random.default_rng([seed, 4])
+    return judged(_attacked(Escape(physical, attacks, seed), rng, threads, report, measuring))
+
+
+def _attacked(
+    blank: Escape,
+    rng: np.random.Generator,
+    threads: int,
+    report: Report,
+    measuring: Sequence[str],
+) -> Escape:
     case, cage, attacks = blank.case, blank.cage, blank.attacks
     unit = case.outline.diameter
     streams = rng.spawn(9)
     if cage.sigma_max is None:
         below = cage.sigma_largest or cage.sigma_0
-        arena = Arena.of(case, cage, below, threads)
+        arena = Arena.of(blank.physical, below, threads)
         report("attacks", 0, 1)
         only = Assault("random", arena.random(np.full(attacks, below / unit), streams[0]))
         report("attacks", 1, 1)
         return replace(blank, arena=arena, below=below, assaults=(only,))
     upper = cage.sigma_max_upper or cage.sigma_max
     levels = at(cage.sigma_max, cage.sigma_0, -1), at(upper, cage.sigma_0, 1)
-    arena = Arena.of(case, cage, levels[0], threads)
+    arena = Arena.of(blank.physical, levels[0], threads)
     room = min(0.05 * upper, 0.5 * (upper - cage.sigma_0))
     window = ((cage.sigma_max - room) / unit, (upper + room) / unit)
 
     def assault(name: str, attack_at: AttackAt, number: int, rounds: int, repeats: int) -> Assault:
         first = 3 * ATTACKERS.index(name)
-        runs: list[Attacks] = []
-        for k, level in enumerate(levels):
-            report("attacks", first + k, 9)
-            runs.append(attack_at(np.full(number, level / unit), streams[first + k]))
+        report("attacks", first, 9)
+        below = attack_at(np.full(number, levels[0] / unit), streams[first])
+        if name == "random" and name not in measuring:
+            return Assault(name, below)  # above it proves nothing: it may or may not find the way
+        report("attacks", first + 1, 9)
+        above = attack_at(np.full(number, levels[1] / unit), streams[first + 1])
+        if name not in measuring:
+            return Assault(name, below, above)
         report("attacks", first + 2, 9)
         found = measure(
             attack_at, window, streams[first + 2], rounds=rounds, sections=4, repeats=repeats,
-            known=runs,
+            known=(below, above),
         )  # fmt: skip
-        return Assault(name, runs[0], runs[1], found)
+        return Assault(name, below, above, found)
 
     random = assault("random", arena.random, attacks, 2, max(4, attacks // 4))
     assaults = [random, assault("guided", arena.guided, attacks, 4, 3)]

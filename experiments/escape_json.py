@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 from experiments.escape import Assault, Escape, wilson_upper
@@ -19,7 +20,8 @@ def escape_document(result: Escape) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "case": result.case.name,
-        "derived": result.derived,
+        "derived": result.physical.derived,
+        "another_grasp": result.physical.another,
         "unit": result.case.unit,
         "diameter": unit,
         "finger_radius": result.case.finger_radius,
@@ -38,7 +40,7 @@ def escape_document(result: Escape) -> dict[str, Any]:
         "attackers": {a.attacker: _assault(a, unit) for a in result.assaults},
         "penetration_max": result.penetration_max * unit,
         "time_step": None if config is None else config.time_step,
-        "solref": None if config is None else [config.contact_solref * config.time_step, 1.0],
+        "solref": None if config is None else list(config.solref),
         "solimp": None if config is None else list(config.solimp),
     }
 
@@ -85,8 +87,8 @@ def escape_table(result: Escape) -> list[str]:
         f"radius {case.finger_radius:.6g} {case.unit}, seed {result.seed}",
         f"planned: {cage.verdict}, sigma_0 {cage.sigma_0:.6g}, sigma_max {top}",
     ]
-    if result.derived:
-        lines.append("derived from point fingers: discs, target where this hand closes")
+    if result.physical.derived:
+        lines.append(result.physical.origin)
     if result.arena is not None:
         head = ("attacker", "below", "escaped", "rate <", "above", "escaped", "deepest", "overrun",
                 "measured sigma_max", "off by", "seen")  # fmt: skip
@@ -103,9 +105,8 @@ def escape_table(result: Escape) -> list[str]:
             "seen: least sigma that an escape had"
         )
         lines.append(
-            f"time step {config.time_step:g} s, solref "
-            f"{config.contact_solref * config.time_step:g} 1, solimp "
-            f"{' '.join(f'{v:g}' for v in config.solimp)}"
+            f"time step {config.time_step:g} s, solref {_words(config.solref)}, solimp "
+            f"{_words(config.solimp)}"
         )
     lines.append(f"{result.verdict}{'' if result.why is None else f': {result.why}'}")
     return lines
@@ -129,3 +130,7 @@ def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
         f"{max(max(float(run.rise_max.max()) - 1.0, 0.0) for run in runs):.1e}",
         interval, off, seen,
     )  # fmt: skip
+
+
+def _words(values: Sequence[float]) -> str:
+    return " ".join(f"{value:g}" for value in values)

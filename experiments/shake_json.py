@@ -106,7 +106,7 @@ def shake_summary(done: Shaken) -> Iterator[str]:
     """Lines for a reader."""
     case, cage = done.physical.case, done.physical.cage
     size = cage.outline.diameter
-    derived = ", derived from point fingers" if done.physical.derived else ""
+    derived = f", {done.physical.origin}" if done.physical.derived else ""
     yield (
         f"{case.name}: discs of radius {case.finger_radius:.6g} {case.unit}{derived}; "
         f"contacts {', '.join(kind.replace('_', ' ') for kind in done.supports.types)}"

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 OBJECTS = Path(__file__).resolve().parent / "objects"
+CASES = Path(__file__).resolve().parent / "cases"
+"""Solved problems, in one folder: ``icage regress`` runs them."""
 HAND = Path(__file__).resolve().parent / "hand"
 
 

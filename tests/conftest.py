@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
-
-CASES = Path(__file__).parent / "cases"
 
 settings.register_profile(
     "repeatable",

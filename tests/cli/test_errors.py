@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from models import CASES
 from tests.cli.runner import here, process
-from tests.conftest import CASES
 from tests.formats.drawings import drawing
 
 POCKET = [[0, 0], [10, 0], [10, 10], [5.5, 10], [5.5, 9], [8, 9], [8, 4], [2, 4], [2, 9], [4.5, 9]]

@@ -15,8 +15,8 @@ import pytest
 
 import experiments.commands
 from experiments import cli
+from models import CASES
 from tests.cli.runner import here
-from tests.conftest import CASES
 
 CASE = str(CASES / "L_best.json")
 ICAGE = [sys.executable, "-m", "experiments.cli"]

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from models import CASES
 from tests.cli.runner import here
-from tests.conftest import CASES
 
 GOLDEN = str(CASES / "tunnel_golden.json")
 

@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 import shapely
 
-from models import object_names
+from models import CASES, object_names
 from tests.cli.runner import here, process
-from tests.conftest import CASES
 
 KEYS = {
     "format",

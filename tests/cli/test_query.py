@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from models import CASES
 from tests.cli.runner import here, process
-from tests.conftest import CASES
 
 CASE = str(CASES / "L_best.json")
 

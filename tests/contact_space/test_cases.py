@@ -14,7 +14,7 @@ from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from icage.membership import query
 from icage.planner import plan
-from tests.conftest import CASES
+from models import CASES
 from tests.oracles.geometry import Ring, unit_hand
 from tests.oracles.path_check import path_facts
 

@@ -17,7 +17,7 @@ from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
 from icage.exterior import BOX, Pieces
 from icage.formats.case_json import read_case
 from icage.planner import plan
-from tests.conftest import CASES
+from models import CASES
 
 NAMES = ("tunnel_golden", "cross_multi", "rand16_best", "hook_deep_multi", "pliers_best")
 

@@ -9,7 +9,7 @@ import pytest
 from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import Case, read_case
 from icage.planner import plan
-from tests.conftest import CASES
+from models import CASES
 from tests.oracles.grid_flood import bracket_sigma_max
 
 SPIRAL = Path(__file__).with_name("tunnel_spiral.json")

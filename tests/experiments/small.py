@@ -10,7 +10,7 @@ from typing import Any
 from icage.cage import Cage
 from icage.formats.case_json import Case, read_case
 from icage.planner import plan
-from tests.conftest import CASES
+from models import CASES
 from tests.sim.grasps import t_shape
 
 

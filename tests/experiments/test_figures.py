@@ -20,7 +20,7 @@ from experiments.drawing.shapes import as_path, tidied
 from experiments.drawing.sheet import Sheet
 from experiments.figures import draw_plan, figure_regions, plan_sheet
 from icage.errors import InputError
-from tests.conftest import CASES
+from models import CASES
 from tests.experiments.small import cage_of
 
 SHOWN = (

@@ -18,8 +18,8 @@ from experiments.paper.study import Study
 from experiments.paper.tunnel import NONE
 from icage.contact_space.kernels.explore import SEAM
 from icage.formats.case_json import read_case
+from models import CASES
 from tests.cli.runner import here
-from tests.conftest import CASES
 
 GOLDEN, T = str(CASES / "tunnel_golden.json"), str(CASES / "T_best.json")
 LARGEST = 2_000_000

@@ -11,7 +11,7 @@ from icage.formats.case_json import read_case
 from icage.membership import VERDICTS, query
 from icage.planner import plan
 from icage.regions import caging_regions
-from tests.conftest import CASES
+from models import CASES
 
 
 def test_on_the_t_it_is_right() -> None:

@@ -18,9 +18,8 @@ from experiments.starts import Starts, draw_starts
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from icage.hand import Placement
-from models import case_paths
+from models import CASES, case_paths
 from tests.cli.runner import Result, here
-from tests.conftest import CASES
 from tests.experiments.small import t_case, write_case
 
 RUN_KEYS = {

@@ -12,8 +12,9 @@ import pytest
 from experiments import shake as shakes
 from experiments.disc_case import DerivedCaseError, physical_case, with_discs
 from icage.formats.case_json import read_case
+from icage.hand import HandShape
+from models import CASES
 from tests.cli.runner import here
-from tests.conftest import CASES
 from tests.experiments.small import t_case, write_case
 
 
@@ -91,9 +92,22 @@ def test_derived_targets_keep_the_hand_and_the_kind(name: str):
     assert lengths[1][0] > lengths[0][0]
 
 
-def test_a_case_whose_derived_target_is_gone_is_bad_input(capsys: Any):
-    case = read_case(CASES / "rectangle_notcage.json")
-    with pytest.raises(DerivedCaseError, match="find no cage near their grasp"):
-        physical_case(case)
+def test_what_is_no_cage_is_bad_input(capsys: Any):
     line = here(capsys, "shake", str(CASES / "rectangle_notcage.json")).error_line()
     assert "opposing parallel edges" in line
+
+
+def test_where_no_disc_fits_another_grasp_of_the_hand_stands_in():
+    """The fingers of this case stand in a pocket narrower than the discs."""
+    case = read_case(CASES / "never_escapes_b.json")
+    found = physical_case(case)
+    assert (found.derived, found.another) == (True, True)
+    assert "another grasp of that hand" in found.origin
+    assert found.cage.hand.phi == pytest.approx(HandShape.from_contacts(case.contacts).phi)
+    assert found.cage.sigma_max is not None
+    assert found.cage.sigma_max >= 1.01 * found.cage.sigma_0
+
+
+def test_a_case_that_discs_cannot_hold_anywhere_says_so():
+    with pytest.raises(DerivedCaseError, match="nor near another of that hand"):
+        physical_case(read_case(CASES / "T_best.json"), radii=[0.4])

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from icage.errors import CaseError, GraspError, HandError, InputError, OutlineError
 from icage.formats.case_json import Case, parse_case, read_case, read_object
-from tests.conftest import CASES
+from models import CASES
 from tests.formats.drawings import drawing
 
 HERE = Path()

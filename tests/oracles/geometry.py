@@ -14,9 +14,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from models import CASES
 
-CASES = Path(__file__).resolve().parents[1] / "cases"
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ import pytest
 
 from icage.formats.case_json import Case, parse_case
 from icage.planner import plan
-from tests.conftest import CASES
+from models import CASES
 from tests.oracles import grid_flood
 from tests.oracles.grid_flood import Bracket, bracket_sigma_max, never_escapes
 

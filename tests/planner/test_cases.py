@@ -10,8 +10,9 @@ import pytest
 from icage.cage import Cage
 from icage.formats.case_json import parse_case
 from icage.planner import plan
+from models import CASES
 
-CASES = sorted((Path(__file__).parents[1] / "cases").glob("*.json"))
+FILES = sorted(CASES.glob("*.json"))
 EXACT = 1e-7
 
 
@@ -28,10 +29,10 @@ def same(found: float | None, expected: float | None) -> bool:
 
 
 def test_all_cases_are_here() -> None:
-    assert len(CASES) == 20
+    assert len(FILES) == 20
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_expected_values(path: Path) -> None:
     cage, expected = load(path)
     assert cage.verdict == expected["verdict"]
@@ -51,7 +52,7 @@ def test_expected_values(path: Path) -> None:
         assert cage.why
 
 
-@pytest.mark.parametrize("path", [p for p in CASES if "disc" in p.stem], ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", [p for p in FILES if "disc" in p.stem], ids=lambda p: p.stem)
 def test_disc_brackets(path: Path) -> None:
     cage, expected = load(path)
     assert cage.sigma_max is not None
@@ -64,7 +65,7 @@ def test_disc_brackets(path: Path) -> None:
     assert cage.sigma_first == pytest.approx(expected["sigma_first_true_in"][0], rel=1e-4)
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_the_document_is_consistent(path: Path) -> None:
     """Punctures ascend from sigma_first to the escape, joins name grasps, levels are ordered."""
     cage, _ = load(path)
@@ -90,6 +91,6 @@ def test_the_document_is_consistent(path: Path) -> None:
 
 
 def test_reasons() -> None:
-    by_name = {path.stem: load(path)[0] for path in CASES if "not" in path.stem}
+    by_name = {path.stem: load(path)[0] for path in FILES if "not" in path.stem}
     assert "slide" in str(by_name["rectangle_notcage"].why)
     assert "no equilibrium" in str(by_name["stretching_not_a_cage"].why)

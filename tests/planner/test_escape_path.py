@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.oracles.geometry import CASES
+from models import CASES
 from tests.oracles.path_check import PathFacts, path_facts
 from tests.planner.wandering import Solved, solved
 

@@ -13,10 +13,11 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.outline import Outline
 from icage.planner import plan
+from models import CASES
 
-CASES = [
+FILES = [
     path
-    for path in sorted((Path(__file__).parents[1] / "cases").glob("*.json"))
+    for path in sorted(CASES.glob("*.json"))
     if json.loads(path.read_text())["expected"]["verdict"] != "not_a_cage"
 ]
 EXACT = 1e-9
@@ -50,7 +51,7 @@ def check(path: Path, moved: Cage, within: float = EXACT) -> None:
         assert a == b or abs(a / b - 1.0) <= within
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_rigid_motion(path: Path) -> None:
     vertices, contacts, radius = data_of(path)
     rng = np.random.default_rng(3)
@@ -59,21 +60,21 @@ def test_rigid_motion(path: Path) -> None:
         check(path, plan(Outline(move(vertices)), move(contacts), radius))
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 @pytest.mark.parametrize("factor", [1e-3, 0.1, 1e3])
 def test_scale(path: Path, factor: float) -> None:
     vertices, contacts, radius = data_of(path)
     check(path, plan(Outline(factor * vertices), factor * contacts, factor * radius))
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_start_vertex(path: Path) -> None:
     vertices, contacts, radius = data_of(path)
     for shift in (1, len(vertices) // 2):
         check(path, plan(Outline(np.roll(vertices, shift, axis=0)), contacts, radius))
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_edge_subdivision(path: Path) -> None:
     vertices, contacts, radius = data_of(path)
     after = np.roll(vertices, -1, axis=0)
@@ -81,7 +82,7 @@ def test_edge_subdivision(path: Path) -> None:
     check(path, plan(Outline(finer), contacts, radius))
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_cyclic_relabelling(path: Path) -> None:
     """sigma then measures another side; its ratios stay."""
     vertices, contacts, radius = data_of(path)
@@ -89,7 +90,7 @@ def test_cyclic_relabelling(path: Path) -> None:
         check(path, plan(Outline(vertices), np.roll(contacts, shift, axis=0), radius))
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_reflection(path: Path) -> None:
     """Mirrored points and fingers 1 and 2 swapped: phi -> (pi - phi_2, pi - phi_1)."""
     vertices, contacts, radius = data_of(path)
@@ -100,7 +101,7 @@ def test_reflection(path: Path) -> None:
     assert moved.hand.phi_deg == pytest.approx((180.0 - phi_2, 180.0 - phi_1), abs=1e-6)
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_far_from_the_origin(path: Path) -> None:
     """A million diameters away a coordinate keeps about ten digits of the object."""
     vertices, contacts, radius = data_of(path)
@@ -110,7 +111,7 @@ def test_far_from_the_origin(path: Path) -> None:
 
 def test_a_planted_change_is_seen() -> None:
     """The comparison itself can fail: an arm of the L longer by a thousandth."""
-    path = next(p for p in CASES if p.stem == "L_best")
+    path = next(p for p in FILES if p.stem == "L_best")
     vertices, contacts, radius = data_of(path)
     other = vertices.copy()
     other[[1, 2], 0] *= 1.001

@@ -10,7 +10,8 @@ import pytest
 from icage.cage import Puncture
 from icage.hand import Placement
 from icage.membership import VERDICTS, query
-from tests.oracles.geometry import CASES, Floats
+from models import CASES
+from tests.oracles.geometry import Floats
 from tests.oracles.planar_closing import close_hand
 from tests.planner.wandering import Solved, as_configurations, grasp_at, solved
 

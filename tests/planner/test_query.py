@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from icage.membership import VERDICTS, query
-from tests.oracles.geometry import CASES
+from models import CASES
 from tests.planner.wandering import solved, wander
 
 NAMES = sorted(path.stem for path in CASES.glob("*.json"))

@@ -1,0 +1,86 @@
+"""Which cases are run, and with how much effort."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from experiments.escape import ATTACKERS
+from icage.errors import InputError
+from models import CASES, case_paths, object_names
+
+Level = Literal["fast", "default", "full"]
+
+FAST: Final = (
+    "T_best",
+    "tunnel_golden",
+    "rectangle_notcage",
+    "disc_hammer",
+    "pliers/2_paper_shape",
+)
+"""Cases of ``--fast``: two derived, one verdict, one with discs of its own, one real tool."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is done for a case; 0 leaves a part out.
+
+    Attributes
+    ----------
+    closings:
+        From the guaranteed set, from the rest of the cage and from outside, each; and a shake.
+    attacks:
+        Of each attacker at each level.
+    measuring:
+        Attackers that also measure sigma_max.
+    second:
+        Closings of each set, and random attacks, in the second engine.
+    """
+
+    level: Level
+    closings: int
+    attacks: int
+    measuring: tuple[str, ...]
+    second: int
+
+
+EFFORTS: Final = {
+    "fast": Effort("fast", 40, 8, ("guided",), 4),
+    "default": Effort("default", 100, 24, ("guided",), 10),
+    "full": Effort("full", 200, 200, ATTACKERS, 40),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A case to run; ``name`` is its key in the baseline."""
+
+    name: str
+    path: Path
+
+
+def shipped(level: Level) -> tuple[Entry, ...]:
+    """The shipped cases: the solved problems, the tools' grasps and the hard ones."""
+    solved = [Entry(path.stem, path) for path in sorted(CASES.glob("*.json"))]
+    tools = [
+        Entry(f"{name}/{path.stem}", path) for name in object_names() for path in case_paths(name)
+    ]
+    every = (*solved, *tools)
+    return tuple(e for e in every if e.name in FAST) if level == "fast" else every
+
+
+def in_folder(folder: Path) -> tuple[Entry, ...]:
+    """All case files of a folder.
+
+    Raises
+    ------
+    InputError:
+        There is no such folder, or no ``*.json`` in it.
+    """
+    if not folder.is_dir():
+        raise InputError(f"--cases {str(folder)!r} is not a folder")
+    found = tuple(Entry(path.stem, path) for path in sorted(folder.glob("*.json")))
+    if not found:
+        raise InputError(f"--cases {str(folder)!r} holds no case file (*.json)")
+    return found

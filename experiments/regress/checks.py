@@ -1,0 +1,58 @@
+"""What must hold for every case, whatever was committed: nothing is forgiven, nothing is tuned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from experiments.regress.closings import Closed
+from experiments.regress.measure import Row
+from experiments.replay import DEEPEST_MOVING
+
+
+def checks(row: Row) -> tuple[str, ...]:
+    """What did not hold, a plain sentence each."""
+    return tuple(_checks(row))
+
+
+def _checks(row: Row) -> Iterator[str]:
+    for line in row.planned.differences:
+        yield f"the two methods disagree: {line}"
+    if row.physical_plan is not None and row.physical_plan is not row.planned:
+        for line in row.physical_plan.differences:
+            yield f"the two methods disagree on the derived case: {line}"
+    for closed in row.closed:
+        yield from _closings(closed, "")
+    if row.escape is not None:
+        yield from (sentence.split(": ", 1)[-1] for sentence in row.escape.failures)
+    if row.shake_error is not None:
+        yield f"shake: {row.shake_error}"
+    if row.shaken is not None:
+        yield from (f"shake: {sentence}" for sentence in row.shaken.failures)
+    if row.second is not None:
+        for closed in row.second.closed:
+            yield from _closings(closed, "second engine: ")
+        attacks = row.second.attacks
+        if attacks is not None and (attacks.escapes or attacks.diverged):
+            yield (
+                f"second engine: random attacks: {attacks.escapes} of {len(attacks)} escaped below "
+                f"sigma_max, {attacks.diverged} diverged"
+            )
+
+
+def _closings(closed: Closed, engine: str) -> Iterator[str]:
+    name, counts = f"{engine}{closed.which}", closed.counts
+    if closed.which == "guaranteed" and counts["target"] < closed.trials:
+        where = ", ".join(f"{k} {w.replace('_', ' ')}" for w, k in counts.items() if k)
+        yield f"{name}: {counts['target']} of {closed.trials} ended in the target ({where})"
+    wanted = counts["target"] + counts["other_grasp"]
+    if closed.which == "rest" and wanted < closed.trials:
+        where = ", ".join(f"{k} {w.replace('_', ' ')}" for w, k in counts.items() if k)
+        yield f"{name}: {wanted} of {closed.trials} ended in a grasp of the plan ({where})"
+    if closed.misnamed:
+        yield f"{name}: {closed.misnamed} ended in a grasp that the query had not named"
+    if closed.let_go:
+        yield f"{name}: {closed.let_go} let go of an object that the query had called caged"
+    if counts["diverged"]:
+        yield f"{name}: {counts['diverged']} diverged"
+    if closed.penetration > DEEPEST_MOVING:
+        yield f"{name}: a finger sank {closed.penetration:.2g} diameters in"

@@ -1,0 +1,144 @@
+"""Closings from three sets of placements, and whether each ended where the query said it may.
+
+The *guaranteed* set, the *rest* of the cage, and *outside*: clear placements near the object that
+the query puts in another cage or in none. About what is outside and escapes nothing is claimed. But
+no closing, from wherever, may end in a grasp of the plan that the query did not name for its start,
+and none may let the object go if its start cannot escape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from experiments.disc_case import PhysicalCase
+from experiments.starts import SamplingError, draw_starts, has_rest
+from icage.arrays import FloatArray
+from icage.cage import Cage
+from icage.kernels.locate import depth_inside
+from icage.membership import ESCAPES, OTHER, Answers, query
+from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Verdicts, judge
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+
+StartsOf = Literal["guaranteed", "rest", "outside"]
+SETS: Final[tuple[StartsOf, ...]] = ("guaranteed", "rest", "outside")
+
+Close = Callable[[Scene, FloatArray], ClosingOutcomes]
+"""An engine's closings from starts (N, 4)."""
+
+_CHUNK, _CHUNKS = 4000, 200
+"""Placements tried at once, and how often, to find some outside."""
+
+_WIDE: Final = 1.5
+"""[1] Hands outside are up to this times sigma_max, or the largest of the cage, wide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    """Closings from one set.
+
+    Attributes
+    ----------
+    misnamed:
+        Ended in a grasp of the plan that the query had not named for the start.
+    let_go:
+        Ended with nothing in the hand although the query had said that the start is caged.
+    position_error, angle_error:
+        [diameter], [rad] Largest, of those that ended in the target; 0 if none did.
+    penetration:
+        [diameter] Deepest disc.
+    """
+
+    which: StartsOf
+    trials: int
+    counts: dict[str, int]
+    misnamed: int
+    let_go: int
+    position_error: float
+    angle_error: float
+    penetration: float
+
+
+def close_set(
+    physical: PhysicalCase, which: StartsOf, count: int, rng: np.random.Generator, close: Close
+) -> Closed | None:
+    """Draw, close, judge; None if the set is empty or too small to be drawn from."""
+    starts = starts_of(physical.cage, which, count, rng)
+    if not len(starts):
+        return None
+    return _judged(physical, which, starts, close(physical.world.scene(), starts))
+
+
+def starts_of(cage: Cage, which: StartsOf, count: int, rng: np.random.Generator) -> FloatArray:
+    """Placements (n, 4) of a set, at most ``count``; none if there is none."""
+    if which == "outside":
+        return _outside(cage, count, rng)
+    if which == "rest" and not has_rest(cage):
+        return np.zeros((0, 4))
+    try:
+        return draw_starts(cage, which, count, rng).placements
+    except SamplingError:
+        return np.zeros((0, 4))
+
+
+def _outside(cage: Cage, count: int, rng: np.random.Generator) -> FloatArray:
+    """Clear placements (n, 4) that the query calls ``other`` or ``escapes``, in equal parts if it
+    can be had; the middle of the hand over the object's bounding box.
+    """
+    top = _WIDE * (cage.sigma_max or cage.sigma_largest or cage.sigma_0)
+    low, high = cage.outline.vertices.min(axis=0), cage.outline.vertices.max(axis=0)
+    middle = cage.hand.z.mean()
+    found: dict[int, list[FloatArray]] = {OTHER: [], ESCAPES: []}
+    have = dict.fromkeys(found, 0)
+    for _ in range(_CHUNKS):
+        sigma = rng.uniform(0.3 * cage.sigma_0, top, _CHUNK)
+        theta = rng.uniform(-np.pi, np.pi, _CHUNK)
+        at = rng.uniform(low, high, (_CHUNK, 2))
+        d = at[:, 0] + 1j * at[:, 1] - sigma * np.exp(1j * theta) * middle
+        rows = np.column_stack([d.real, d.imag, theta, sigma])
+        rows = rows[_clear(cage, rows)]
+        verdicts = query(cage, rows).verdict
+        for verdict, parts in found.items():
+            parts.append(rows[verdicts == verdict])
+            have[verdict] += len(parts[-1])
+        if min(have.values()) >= count:
+            break
+    others = np.concatenate(found[OTHER])[: (count + 1) // 2]
+    free = np.concatenate(found[ESCAPES])[: count - len(others)]
+    return np.concatenate([others, free])
+
+
+def _clear(cage: Cage, rows: FloatArray) -> np.ndarray:
+    fingers = cage.hand.fingers(rows).reshape(-1, 2)
+    depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
+    return np.asarray((depth <= 0.0).all(axis=1))
+
+
+def _judged(
+    physical: PhysicalCase, which: StartsOf, starts: FloatArray, closings: ClosingOutcomes
+) -> Closed:
+    cage = physical.cage
+    verdicts = judge(closings, cage.grasps, cage.outline)
+    answers = query(cage, starts)
+    reached = verdicts.outcome == TARGET
+    caged = answers.verdict < ESCAPES
+    return Closed(
+        which,
+        len(starts),
+        verdicts.counts(),
+        misnamed=_misnamed(answers, verdicts),
+        let_go=int((caged & (verdicts.outcome == ESCAPED)).sum()),
+        position_error=float(verdicts.position_error[reached].max(initial=0.0)),
+        angle_error=float(verdicts.angle_error[reached].max(initial=0.0)),
+        penetration=float(closings.penetration_max.max()),
+    )
+
+
+def _misnamed(answers: Answers, verdicts: Verdicts) -> int:
+    held = np.flatnonzero(np.isin(verdicts.outcome, [TARGET, OTHER_GRASP]))
+    named = answers.verdict[held] < ESCAPES
+    return sum(int(verdicts.grasp_id[i]) not in answers.grasps_of(i) for i in held[named].tolist())

@@ -1,0 +1,154 @@
+"""One case, everything measured: both planners, closings, attacks, shake, the second engine."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from experiments.disc_case import DerivedCaseError, PhysicalCase, physical_case
+from experiments.escape import Escape, at, attacked
+from experiments.regress.cases import Effort, Entry
+from experiments.regress.closings import SETS, Close, Closed, close_set
+from experiments.shake import ShakeError, Shaken, shake_case
+from icage.agreement import disagreements
+from icage.cage import Cage
+from icage.contact_space.engine import ContactSpace
+from icage.engine import Engine
+from icage.formats.case_json import Case, read_case
+from icage.planner import plan
+from sim.attack import Attacks
+from sim.batch import close_many
+
+SEED: Final = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Second:
+    """What the second engine says: closings and random attacks below sigma_max."""
+
+    closed: tuple[Closed, ...]
+    attacks: Attacks | None
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A case by both methods."""
+
+    case: Case
+    cells: Cage
+    contact_space: Cage
+
+    @property
+    def differences(self) -> list[str]:
+        """Where the methods disagree, in words."""
+        return disagreements(self.cells, self.contact_space)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Everything measured of one case.
+
+    Attributes
+    ----------
+    physical:
+        None if there is nothing to close into (not a cage), or no discs fit; ``why`` says which.
+    seed, effort:
+        With which it comes out again.
+    """
+
+    name: str
+    planned: Planned
+    seed: int
+    effort: Effort
+    physical: PhysicalCase | None = None
+    physical_plan: Planned | None = None
+    why: str | None = None
+    closed: tuple[Closed, ...] = field(default=())
+    escape: Escape | None = None
+    shaken: Shaken | None = None
+    shake_error: str | None = None
+    second: Second | None = None
+
+
+def measure(entry: Entry, effort: Effort, seed: int = SEED) -> Row:
+    """Read, plan by both methods, derive discs if the fingers are points, and test in physics."""
+    case = read_case(entry.path)
+    planned = plan_both(case)
+    row = Row(entry.name, planned, seed, effort)
+    if planned.cells.verdict == "not_a_cage":
+        return replace(row, why=f"not_a_cage: {planned.cells.why}")
+    try:
+        physical = physical_case(case)
+    except DerivedCaseError as error:
+        return replace(row, why=str(error))
+    return in_physics(row, physical)
+
+
+def plan_both(case: Case, second: Engine | None = None) -> Planned:
+    """A case by the cells and by the paper's method, or by another in its place."""
+    cells = plan(case.outline, case.contacts, case.finger_radius)
+    other = plan(case.outline, case.contacts, case.finger_radius, second or ContactSpace())
+    return Planned(case, cells, other)
+
+
+def in_physics(row: Row, physical: PhysicalCase) -> Row:
+    """Close, attack and shake the physical case of a row."""
+    effort, seed = row.effort, row.seed
+    streams = np.random.default_rng([seed, 5]).spawn(len(SETS))
+    row = replace(
+        row,
+        physical=physical,
+        physical_plan=plan_both(physical.case) if physical.derived else row.planned,
+    )
+    if effort.closings:
+        closed = _closed(physical, effort.closings, streams, lambda s, x: close_many(s, x, 1))
+        row = replace(row, closed=closed)
+        try:
+            row = replace(row, shaken=shake_case(physical, seed))
+        except ShakeError as error:
+            row = replace(row, shake_error=str(error))
+    if effort.attacks:
+        escape = attacked(physical, effort.attacks, seed, 1, _silent, effort.measuring)
+        row = replace(row, escape=escape)
+    if effort.second and second_engine():
+        row = replace(row, second=_second(physical, effort.second, seed))
+    return row
+
+
+def second_engine() -> bool:
+    """Whether the second engine is installed."""
+    return importlib.util.find_spec("pymunk") is not None
+
+
+def _closed(
+    physical: PhysicalCase, count: int, streams: list[np.random.Generator], close: Close
+) -> tuple[Closed, ...]:
+    sets = zip(SETS, streams, strict=True)
+    found = [close_set(physical, which, count, rng, close) for which, rng in sets]
+    return tuple(one for one in found if one is not None)
+
+
+def _second(physical: PhysicalCase, count: int, seed: int) -> Second:
+    """The same sets and attacks, fewer of them: this engine has no batch."""
+    from sim.second.attack import random_attack_second  # optional, and slow to load
+    from sim.second.closing import close_many_second
+
+    streams = np.random.default_rng([seed, 6]).spawn(len(SETS) + 1)
+    closed = _closed(physical, count, streams[:-1], close_many_second)
+    cage = physical.cage
+    if cage.sigma_max is None:
+        return Second(closed, None)
+    scene = physical.world.scene()
+    level = at(cage.sigma_max, cage.sigma_0, -1) / scene.thing.unit
+    start = scene.start_positions(cage.target_placement.as_array())
+    attacks = random_attack_second(
+        scene, np.repeat(start, count, axis=0), np.full(count, level), streams[-1]
+    )
+    return Second(closed, attacks)
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Attacks report to nobody here: cases do."""

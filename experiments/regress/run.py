@@ -1,0 +1,110 @@
+"""All cases on all cores; the same result for any number of them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from experiments.regress.baseline import (
+    baseline_document,
+    baseline_path,
+    differences,
+    read_baseline,
+)
+from experiments.regress.cases import EFFORTS, Effort, Entry, Level, in_folder, shipped
+from experiments.regress.document import row_document
+from experiments.regress.measure import measure
+
+Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Regression:
+    """A run: a document per case with what failed in it, and where the baseline is."""
+
+    level: Level
+    rows: tuple[dict[str, Any], ...]
+    seconds: tuple[float, ...]
+    changes: tuple[str, ...]
+    """Differences to the baseline, however small the tolerance that they exceed."""
+    missing: tuple[str, ...]
+    """Cases that the baseline does not know."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether anything did not hold."""
+        return any(row["failures"] for row in self.rows)
+
+
+def regress(
+    level: Level, folder: Path | None, baseline: Path | None, workers: int, report: Report
+) -> Regression:
+    """Measure every case and compare it with the baseline (None: the committed one).
+
+    Raises
+    ------
+    InputError:
+        A bad folder, case or baseline, before anything runs.
+    """
+    entries = shipped(level) if folder is None else in_folder(folder)
+    was = read_baseline(baseline or baseline_path(level))
+    documents, seconds = _all(entries, EFFORTS[level], workers, report)
+    changes: list[str] = []
+    for row in documents:
+        if row["case"] in was:
+            found = differences(row, was[row["case"]])
+            row["failures"] += [f"baseline: {line}" for line in found]
+            changes += [f"{row['case']}: {line}" for line in found]
+    missing = tuple(row["case"] for row in documents if row["case"] not in was)
+    return Regression(level, tuple(documents), tuple(seconds), tuple(changes), missing)
+
+
+def _all(
+    entries: Sequence[Entry], effort: Effort, workers: int, report: Report
+) -> tuple[list[dict[str, Any]], list[float]]:
+    workers = min(workers or os.cpu_count() or 1, len(entries))
+    report("cases", 0, len(entries))
+    if workers == 1:
+        done = []
+        for number, entry in enumerate(entries):
+            done.append(one_case(entry, effort))
+            report("cases", number + 1, len(entries))
+    else:
+        spawn = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
+            futures = [pool.submit(one_case, entry, effort) for entry in entries]
+            ended: list[Future[tuple[dict[str, Any], float]]] = []
+
+            def count(future: Future[tuple[dict[str, Any], float]]) -> None:
+                ended.append(future)
+                report("cases", len(ended), len(entries))
+
+            for future in futures:
+                future.add_done_callback(count)
+            done = [future.result() for future in futures]
+    return [row for row, _ in done], [spent for _, spent in done]
+
+
+def one_case(entry: Entry, effort: Effort) -> tuple[dict[str, Any], float]:
+    """The document of one case, and the seconds it took."""
+    began = time.perf_counter()
+    row = row_document(measure(entry, effort))
+    return row, time.perf_counter() - began
+
+
+def new_baseline(done: Regression) -> dict[str, Any]:
+    """What would be committed of this run; rows without their baseline's complaints."""
+    rows = [
+        {**row, "failures": [f for f in row["failures"] if not f.startswith("baseline: ")]}
+        for row in done.rows
+    ]
+    effort = EFFORTS[done.level]
+    return baseline_document(
+        rows, {name: getattr(effort, name) for name in ("level", "closings", "attacks", "second")}
+    )

@@ -1,0 +1,185 @@
+"""The result as a table: for a terminal and as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from experiments.escape import wilson_upper
+
+HEAD: Final = (
+    "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",
+    "rigid", "guided above", "measured off", "deepest", "held", "second", "verdict",
+)  # fmt: skip
+
+LEGEND: Final = (
+    "discs: radius over the diameter, * derived from point fingers, ** at another grasp of that "
+    "hand. guaranteed: closings that ended in the target. rest: in the target + in another grasp "
+    "of the plan. outside: in the target + in another grasp + let go. random, guided, rigid: "
+    "attacks below sigma_max that got the object out, of how many. guided above: attacks above it "
+    "that did. measured off: where guided attacks begin to succeed, from the planner's sigma_max. "
+    "deepest: finger over the diameter, closings | attacks. held: after closing, rank of the "
+    "contacts. second: the other engine's guaranteed + random escapes."
+)
+
+
+def table(rows: Sequence[Mapping[str, Any]]) -> list[tuple[str, ...]]:
+    """The head and a row per case."""
+    return [HEAD, *(_row(row) for row in rows)]
+
+
+def terminal(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Columns of equal width, then what the columns mean and what did not hold."""
+    lines = table(rows)
+    widths = [max(len(line[k]) for line in lines) for k in range(len(HEAD))]
+    for line in lines:
+        cells = [line[0].ljust(widths[0])]
+        cells += [text.rjust(w) for text, w in zip(line[1:], widths[1:], strict=True)]
+        yield "  ".join(cells).rstrip()
+    yield from _below(rows)
+
+
+def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Iterator[str]:
+    """A page: title, table, legend, bottom line, the command that makes it again."""
+    lines = table(rows)
+    yield f"# {title}"
+    yield ""
+    yield f"| {' | '.join(lines[0])} |"
+    yield f"|{'---|' * len(HEAD)}"
+    yield from (f"| {' | '.join(line)} |" for line in lines[1:])
+    for line in _below(rows):
+        yield ""
+        yield line
+    yield ""
+    yield f"    {command}"
+
+
+def _below(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    yield LEGEND
+    yield bottom_line(rows)
+    settings = next((row["attacks"] for row in rows if row["attacks"]), None)
+    if settings is not None:
+        constant, damping = settings["solref"]
+        yield (
+            f"seed {rows[0]['seed']}, no friction, time step {settings['time_step']} s, contacts "
+            f"with a time constant of {constant:g} s and a damping ratio of {damping:g}"
+        )
+    for row in rows:
+        yield from (f"{row['case']}: {sentence}" for sentence in row["failures"])
+
+
+def bottom_line(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The sums over all cases that physics could judge."""
+    judged = [row for row in rows if row["attacks"] and row["attacks"]["verdict"] != THIN]
+    closed = [row["closings"]["guaranteed"] for row in rows if "guaranteed" in row["closings"]]
+    target, trials = sum(c["target"] for c in closed), sum(c["trials"] for c in closed)
+    below = [_runs(row, "below") for row in judged]
+    out = sum(run["escapes"] for runs in below for run in runs.values())
+    tried = sum(run["attacks"] for runs in below for run in runs.values())
+    above = [runs["guided"] for row in judged if "guided" in (runs := _runs(row, "above"))]
+    thin = sum(1 for row in rows if row["attacks"] and row["attacks"]["verdict"] == THIN)
+    none = sum(1 for row in rows if row["physical"] is None)
+    bad = sum(1 for row in rows if row["failures"])
+    each = [runs["random"] for runs in below if "random" in runs]
+    worst = max((wilson_upper(r["escapes"], r["attacks"]) for r in each), default=1.0)
+    return (
+        f"{len(rows)} cases, {bad} failed; {target} of {trials} closings from guaranteed sets in "
+        f"the target; {out} of {tried} attacks below sigma_max escaped (random attacks on one "
+        f"case: rate under {100.0 * worst:.1f} % at 95 %); "
+        f"{sum(r['escapes'] for r in above)} of {sum(r['attacks'] for r in above)} guided ones "
+        f"above it; {thin} too thin for physics, {none} with nothing to close into"
+    )
+
+
+THIN: Final = "too_thin_for_physics"
+
+
+def _runs(row: Mapping[str, Any], side: str) -> dict[str, Any]:
+    attacks = row["attacks"] or {}
+    return {
+        name: attacks[name][side]
+        for name in ("random", "guided", "rigid")
+        if name in attacks and attacks[name][side] is not None
+    }
+
+
+def _row(row: Mapping[str, Any]) -> tuple[str, ...]:
+    physical, closings, attacks = row["physical"], row["closings"], row["attacks"] or {}
+    levels = physical or row["planner"]
+    below, above = _runs(row, "below"), _runs(row, "above")
+    return (
+        row["case"],
+        "-" if physical is None else _discs(physical),
+        _opening(levels),
+        *(_closings(closings.get(which), which) for which in ("guaranteed", "rest", "outside")),
+        *(_escapes(below.get(name)) for name in ("random", "guided", "rigid")),
+        _escapes(above.get("guided")),
+        _off(attacks.get("guided", {}).get("measured"), levels["sigma_max"]),
+        _deepest(closings, attacks),
+        _held(row["shake"]),
+        _second(row["second"]),
+        _verdict(row),
+    )
+
+
+def _discs(physical: Mapping[str, Any]) -> str:
+    stars = "**" if "another" in physical["origin"] else "*" * ("derived" in physical["origin"])
+    return f"{100.0 * physical['finger_radius'] / physical['diameter']:.2g} %{stars}"
+
+
+def _opening(levels: Mapping[str, Any]) -> str:
+    if levels["verdict"] != "cage":
+        return str(levels["verdict"]).replace("_", " ")
+    return f"{levels['sigma_max'] / levels['sigma_0']:.4f}"
+
+
+def _closings(closed: Mapping[str, Any] | None, which: str) -> str:
+    if closed is None:
+        return "-"
+    if which == "guaranteed":
+        return f"{closed['target']}/{closed['trials']}"
+    parts = f"{closed['target']}+{closed['other_grasp']}"
+    let_go = f"+{closed['escaped']}" if which == "outside" else ""
+    return f"{parts}{let_go}/{closed['trials']}"
+
+
+def _escapes(run: Mapping[str, Any] | None) -> str:
+    return "-" if run is None else f"{run['escapes']}/{run['attacks']}"
+
+
+def _off(measured: Sequence[float | None] | None, top: float | None) -> str:
+    if measured is None or top is None:
+        return "-"
+    low, high = (None if level is None else 100.0 * (level / top - 1.0) for level in measured)
+    end = "inf" if high is None else f"{high:+.3f} %"
+    return f"{low:+.3f} .. {end}"
+
+
+def _deepest(closings: Mapping[str, Any], attacks: Mapping[str, Any]) -> str:
+    if not closings and not attacks:
+        return "-"
+    deepest = max((c["penetration"] for c in closings.values()), default=0.0)
+    return f"{deepest:.1e} | {attacks.get('penetration', 0.0):.1e}"
+
+
+def _held(shake: Mapping[str, Any] | None) -> str:
+    if shake is None:
+        return "-"
+    return f"{'yes' if shake['held'] else 'no'}, {shake['rank']}"
+
+
+def _second(second: Mapping[str, Any] | None) -> str:
+    if second is None:
+        return "-"
+    guaranteed = second["closings"].get("guaranteed")
+    closed = "-" if guaranteed is None else f"{guaranteed['target']}/{guaranteed['trials']}"
+    return f"{closed} + {_escapes(second['random_below'])}"
+
+
+def _verdict(row: Mapping[str, Any]) -> str:
+    if row["failures"]:
+        return "FAILED"
+    if row["physical"] is None:
+        return "no physics"
+    verdict = (row["attacks"] or {}).get("verdict", "ok")
+    return "too thin" if verdict == THIN else str(verdict)
