@@ -6,7 +6,9 @@ from pathlib import Path
 
 OBJECTS = Path(__file__).resolve().parent / "objects"
 CASES = Path(__file__).resolve().parent / "cases"
-"""Solved problems, in one folder: ``icage regress`` runs them."""
+"""Solved problems: what the planner is checked against."""
+HARD = Path(__file__).resolve().parent / "hard"
+"""Cages with disc fingers that are hard on planner or physics."""
 HAND = Path(__file__).resolve().parent / "hand"
 
 

@@ -62,11 +62,12 @@ def mirrored(outline: Outline) -> Outline:
     return Outline(np.column_stack([middle - outline.vertices[:, 0], outline.vertices[:, 1]]))
 
 
-@pytest.mark.parametrize("effort", [CLOSE, ATTACK])
+@pytest.mark.parametrize("effort", [CLOSE, pytest.param(ATTACK, marks=pytest.mark.slow)])
 def test_what_is_sound_passes(sound: PhysicalCase, effort: Effort) -> None:
     assert not failures(sound, effort)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "words"), [(1.01, "escaped below"), (0.99, "above sigma_max")])
 def test_a_sigma_max_off_by_one_percent_is_caught(
     sound: PhysicalCase, factor: float, words: str
@@ -88,17 +89,20 @@ def test_no_tunnel_edges_are_caught_by_both_methods() -> None:
     assert any("the two methods disagree: sigma_max" in line for line in found), found
 
 
+@pytest.mark.slow
 def test_no_tunnel_edges_are_caught_by_physics() -> None:
-    physical = physical_case(find_case(str(CASES / "tunnel_golden.json")))
+    """Discs of 0.1 %: larger ones do not fit through the tunnel, and it does not matter."""
+    point = find_case(str(CASES / "tunnel_golden.json"))
+    physical = physical_case(point, radii=[0.001])
     case = physical.case
     wrong = plan(case.outline, case.contacts, case.finger_radius, ContactSpace(tunnels=False))
     assert wrong.sigma_max is not None
     assert physical.cage.sigma_max is not None
     assert wrong.sigma_max > 1.005 * physical.cage.sigma_max
     right = physical.cage.escape_path  # led along the true way out, the claim being the wrong one
-    claimed = replace(wrong, escape_path=right)
-    found = attacked(replace(physical, cage=claimed), 4, 0, 1, lambda *_: None, ["guided"])
-    assert any("4 of 4 escaped below" in line for line in found.failures), found.failures
+    claimed = replace(physical, cage=replace(wrong, escape_path=right))
+    found = attacked(claimed, 4, 0, 1, lambda *_: None, ["guided"]).failures
+    assert any("guided" in line and "4 of 4 escaped below" in line for line in found), found
 
 
 def test_a_finger_radius_off_by_two_percent_is_caught(sound: PhysicalCase) -> None:
@@ -128,7 +132,7 @@ def test_a_query_that_names_too_little_is_caught(
 
 def test_shipped_cases() -> None:
     every = shipped("default")
-    assert len({entry.name for entry in every}) == len(every) >= 27
+    assert len({entry.name for entry in every}) == len(every) >= 36
     assert {entry.name for entry in shipped("fast")} < {entry.name for entry in every}
     assert shipped("full") == every
     assert EFFORTS["full"].attacks == 200
@@ -191,6 +195,7 @@ def test_not_a_cage_is_checked_for_its_verdict_only() -> None:
     assert (row["physical"], row["attacks"], row["failures"]) == (None, None, [])
 
 
+@pytest.mark.slow
 def test_table_of_one_case(sound: PhysicalCase) -> None:
     effort = replace(ATTACK, closings=12)
     row = row_document(in_physics(Row("pliers", planned(), 0, effort), sound))
