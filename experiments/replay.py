@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 
@@ -51,7 +51,7 @@ class Run:
     second: Cage
     """The cage by the paper's method, for comparison and for the course of its search."""
     scene: Scene
-    which: StartSet
+    which: StartSet | Literal["outside"]
     starts: Starts
     closings: ClosingOutcomes
     verdicts: Verdicts
@@ -150,7 +150,7 @@ def run_failures(run: Run) -> Iterator[str]:
     counts, trials = run.counts, len(run.closings)
     wanted = ("target",) if run.which == "guaranteed" else ("target", "other_grasp")
     missed = {name: k for name, k in counts.items() if k and name not in wanted}
-    if missed:
+    if missed and run.which != "outside":
         what = ", ".join(f"{k} {name.replace('_', ' ')}" for name, k in missed.items())
         goal = "the target grasp" if run.which == "guaranteed" else "a grasp that was planned"
         yield f"{run.title}: {sum(missed.values())} of {trials} did not end in {goal} ({what})"
@@ -180,9 +180,8 @@ def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
     size = run.case.outline.diameter
     reached = run.verdicts.outcome == OUTCOMES.index("target")
     sigma = run.starts.placements[:, 3]
-    limit = safe_level(
-        run.cage.sigma_first if run.which == "guaranteed" else run.cage.sigma_max, run.cage.sigma_0
-    )
+    level = run.cage.sigma_first if run.which == "guaranteed" else run.cage.sigma_max
+    limit = safe_level(None if run.which == "outside" else level, run.cage.sigma_0)
     return {
         "grasp": run.case.name,
         "set": run.which,

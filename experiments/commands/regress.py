@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from experiments.options import add_json, check_output, count, file_name
+from experiments.options import add_json, check_folder, check_output, count, file_name
 
 
 def add_parser(subparsers: Any) -> None:
@@ -35,6 +35,9 @@ def add_parser(subparsers: Any) -> None:
         help="write what was measured as the baseline; prints what changes",
     )
     add_json(parser)
+    parser.add_argument(
+        "--out", metavar="DIR", type=file_name, help="keep all closings there, for replay-trial"
+    )
     parser.add_argument("--markdown", metavar="FILE", type=file_name, help="the table as a page")
     parser.add_argument("--junit", metavar="FILE", type=file_name, help="JUnit XML")
     parser.add_argument(
@@ -46,11 +49,15 @@ def run(args: argparse.Namespace) -> int:
     """Run, write, print; 1 if anything did not hold."""
     for option in ("json", "markdown", "junit"):
         check_output(f"--{option}", getattr(args, option))
+    if args.out is not None:
+        check_folder("--out", Path(args.out), ("replay.json", "trials.parquet"))
 
     from experiments.json_out import write_json  # only now: engine and planner take time to load
     from experiments.progress import stage_bar
     from experiments.regress.baseline import baseline_path
     from experiments.regress.junit import junit
+    from experiments.regress.measure import SEED
+    from experiments.regress.record import write_records
     from experiments.regress.run import new_baseline, regress
     from experiments.regress.table import markdown, terminal
     from experiments.whole_files import whole_file
@@ -74,6 +81,8 @@ def run(args: argparse.Namespace) -> int:
     if args.junit is not None:
         with whole_file(Path(args.junit)) as part:
             part.write_text(junit(done.rows, done.seconds), encoding="utf-8")
+    if args.out is not None:
+        write_records(list(done.records), SEED, Path(args.out))
     if args.json != "-":
         print("\n".join(terminal(done.rows)))
     for name in done.missing:

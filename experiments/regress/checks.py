@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
 from experiments.replay import DEEPEST_MOVING
+
+SECOND_DEEPEST: Final = 1e-2
+"""[diameter] The second engine lets wedged fingers sink in; deeper than this says nothing."""
 
 
 def checks(row: Row) -> tuple[str, ...]:
@@ -40,12 +44,13 @@ def _checks(row: Row) -> Iterator[str]:
 
 
 def _closings(closed: Closed, engine: str) -> Iterator[str]:
-    name, counts = f"{engine}{closed.which}", closed.counts
-    if closed.which == "guaranteed" and counts["target"] < closed.trials:
+    which, counts = closed.run.which, closed.run.counts
+    name = f"{engine}{which}"
+    if which == "guaranteed" and counts["target"] < closed.trials:
         where = ", ".join(f"{k} {w.replace('_', ' ')}" for w, k in counts.items() if k)
         yield f"{name}: {counts['target']} of {closed.trials} ended in the target ({where})"
     wanted = counts["target"] + counts["other_grasp"]
-    if closed.which == "rest" and wanted < closed.trials:
+    if which == "rest" and wanted < closed.trials:
         where = ", ".join(f"{k} {w.replace('_', ' ')}" for w, k in counts.items() if k)
         yield f"{name}: {wanted} of {closed.trials} ended in a grasp of the plan ({where})"
     if closed.misnamed:
@@ -54,5 +59,5 @@ def _closings(closed: Closed, engine: str) -> Iterator[str]:
         yield f"{name}: {closed.let_go} let go of an object that the query had called caged"
     if counts["diverged"]:
         yield f"{name}: {counts['diverged']} diverged"
-    if closed.penetration > DEEPEST_MOVING:
+    if closed.penetration > (SECOND_DEEPEST if engine else DEEPEST_MOVING):
         yield f"{name}: a finger sank {closed.penetration:.2g} diameters in"

@@ -15,12 +15,13 @@ from typing import Final, Literal
 import numpy as np
 
 from experiments.disc_case import PhysicalCase
-from experiments.starts import SamplingError, draw_starts, has_rest
-from icage.arrays import FloatArray
+from experiments.replay import Run
+from experiments.starts import SamplingError, Starts, draw_starts, has_rest
+from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.membership import ESCAPES, OTHER, Answers, query
-from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Verdicts, judge
+from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
 from sim.outcome import ClosingOutcomes
 from sim.scene import Scene
 
@@ -39,7 +40,7 @@ _WIDE: Final = 1.5
 
 @dataclass(frozen=True, slots=True)
 class Closed:
-    """Closings from one set.
+    """Closings from one set, judged.
 
     Attributes
     ----------
@@ -47,53 +48,84 @@ class Closed:
         Ended in a grasp of the plan that the query had not named for the start.
     let_go:
         Ended with nothing in the hand although the query had said that the start is caged.
-    position_error, angle_error:
-        [diameter], [rad] Largest, of those that ended in the target; 0 if none did.
-    penetration:
-        [diameter] Deepest disc.
     """
 
-    which: StartsOf
-    trials: int
-    counts: dict[str, int]
+    run: Run
     misnamed: int
     let_go: int
-    position_error: float
-    angle_error: float
-    penetration: float
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(self.run.closings)
+
+    @property
+    def position_error(self) -> float:
+        """[diameter] Largest of those that ended in the target; 0 if none did."""
+        return self._worst(self.run.verdicts.position_error)
+
+    @property
+    def angle_error(self) -> float:
+        """[rad] Largest of those that ended in the target; 0 if none did."""
+        return self._worst(self.run.verdicts.angle_error)
+
+    @property
+    def penetration(self) -> float:
+        """[diameter] Deepest disc."""
+        return float(self.run.closings.penetration_max.max())
+
+    def _worst(self, errors: FloatArray) -> float:
+        return float(errors[self.run.verdicts.outcome == TARGET].max(initial=0.0))
 
 
 def close_set(
-    physical: PhysicalCase, which: StartsOf, count: int, rng: np.random.Generator, close: Close
+    physical: PhysicalCase,
+    second: Cage,
+    which: StartsOf,
+    count: int,
+    rng: np.random.Generator,
+    close: Close,
+    tolerances: Tolerances | None = None,
 ) -> Closed | None:
-    """Draw, close, judge; None if the set is empty or too small to be drawn from."""
-    starts = starts_of(physical.cage, which, count, rng)
+    """Draw, close, judge; None if the set is empty or too small to be drawn from.
+
+    ``second`` is the cage by the other method, kept with the record.
+    """
+    cage, scene = physical.cage, physical.world.scene()
+    starts = starts_of(cage, which, count, rng)
     if not len(starts):
         return None
-    return _judged(physical, which, starts, close(physical.world.scene(), starts))
+    closings = close(scene, starts.placements)
+    verdicts = judge(closings, cage.grasps, cage.outline, tolerances=tolerances)
+    answers = query(cage, starts.placements)
+    let_go = (answers.verdict < ESCAPES) & (verdicts.outcome == ESCAPED)
+    run = Run(physical.case, cage, second, scene, which, starts, closings, verdicts)
+    return Closed(run, _misnamed(answers, verdicts), int(let_go.sum()))
 
 
-def starts_of(cage: Cage, which: StartsOf, count: int, rng: np.random.Generator) -> FloatArray:
-    """Placements (n, 4) of a set, at most ``count``; none if there is none."""
+def starts_of(cage: Cage, which: StartsOf, count: int, rng: np.random.Generator) -> Starts:
+    """Placements of a set, at most ``count``; none if there is none."""
+    none = Starts(np.zeros((0, 4)), 0)
     if which == "outside":
         return _outside(cage, count, rng)
     if which == "rest" and not has_rest(cage):
-        return np.zeros((0, 4))
+        return none
     try:
-        return draw_starts(cage, which, count, rng).placements
+        return draw_starts(cage, which, count, rng)
     except SamplingError:
-        return np.zeros((0, 4))
+        return none
 
 
-def _outside(cage: Cage, count: int, rng: np.random.Generator) -> FloatArray:
-    """Clear placements (n, 4) that the query calls ``other`` or ``escapes``, in equal parts if it
-    can be had; the middle of the hand over the object's bounding box.
+def _outside(cage: Cage, count: int, rng: np.random.Generator) -> Starts:
+    """Clear placements that the query calls ``other`` or ``escapes``, in equal parts if it can be.
+
+    The middle of the hand is anywhere over the object's bounding box.
     """
     top = _WIDE * (cage.sigma_max or cage.sigma_largest or cage.sigma_0)
     low, high = cage.outline.vertices.min(axis=0), cage.outline.vertices.max(axis=0)
     middle = cage.hand.z.mean()
     found: dict[int, list[FloatArray]] = {OTHER: [], ESCAPES: []}
-    have = dict.fromkeys(found, 0)
+    have, tried = dict.fromkeys(found, 0), 0
     for _ in range(_CHUNKS):
         sigma = rng.uniform(0.3 * cage.sigma_0, top, _CHUNK)
         theta = rng.uniform(-np.pi, np.pi, _CHUNK)
@@ -102,6 +134,7 @@ def _outside(cage: Cage, count: int, rng: np.random.Generator) -> FloatArray:
         rows = np.column_stack([d.real, d.imag, theta, sigma])
         rows = rows[_clear(cage, rows)]
         verdicts = query(cage, rows).verdict
+        tried += _CHUNK
         for verdict, parts in found.items():
             parts.append(rows[verdicts == verdict])
             have[verdict] += len(parts[-1])
@@ -109,33 +142,13 @@ def _outside(cage: Cage, count: int, rng: np.random.Generator) -> FloatArray:
             break
     others = np.concatenate(found[OTHER])[: (count + 1) // 2]
     free = np.concatenate(found[ESCAPES])[: count - len(others)]
-    return np.concatenate([others, free])
+    return Starts(np.concatenate([others, free]), tried)
 
 
-def _clear(cage: Cage, rows: FloatArray) -> np.ndarray:
+def _clear(cage: Cage, rows: FloatArray) -> BoolArray:
     fingers = cage.hand.fingers(rows).reshape(-1, 2)
     depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
     return np.asarray((depth <= 0.0).all(axis=1))
-
-
-def _judged(
-    physical: PhysicalCase, which: StartsOf, starts: FloatArray, closings: ClosingOutcomes
-) -> Closed:
-    cage = physical.cage
-    verdicts = judge(closings, cage.grasps, cage.outline)
-    answers = query(cage, starts)
-    reached = verdicts.outcome == TARGET
-    caged = answers.verdict < ESCAPES
-    return Closed(
-        which,
-        len(starts),
-        verdicts.counts(),
-        misnamed=_misnamed(answers, verdicts),
-        let_go=int((caged & (verdicts.outcome == ESCAPED)).sum()),
-        position_error=float(verdicts.position_error[reached].max(initial=0.0)),
-        angle_error=float(verdicts.angle_error[reached].max(initial=0.0)),
-        penetration=float(closings.penetration_max.max()),
-    )
 
 
 def _misnamed(answers: Answers, verdicts: Verdicts) -> int:

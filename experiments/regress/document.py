@@ -22,7 +22,7 @@ def row_document(row: Row) -> dict[str, Any]:
         "why_no_physics": row.why,
         "planner": _levels(row.planned.cells),
         "physical": None if row.physical is None else _physical(row),
-        "closings": {closed.which: _closed(closed) for closed in row.closed},
+        "closings": {closed.run.which: _closed(closed) for closed in row.closed},
         "attacks": _attacks(row),
         "shake": _shake(row),
         "second": _second(row),
@@ -55,7 +55,7 @@ def _physical(row: Row) -> dict[str, Any]:
 def _closed(closed: Closed) -> dict[str, Any]:
     return {
         "trials": closed.trials,
-        **closed.counts,
+        **closed.run.counts,
         "misnamed": closed.misnamed,
         "let_go": closed.let_go,
         "position_error": closed.position_error,
@@ -127,7 +127,7 @@ def _second(row: Row) -> dict[str, Any] | None:
         return None
     attacks = row.second.attacks
     return {
-        "closings": {closed.which: _closed(closed) for closed in row.second.closed},
+        "closings": {closed.run.which: _closed(closed) for closed in row.second.closed},
         "random_below": None if attacks is None else _run(attacks),
     }
 

@@ -14,6 +14,7 @@ from experiments.regress.cases import Effort, Entry
 from experiments.regress.closings import SETS, Close, Closed, close_set
 from experiments.shake import ShakeError, Shaken, shake_case
 from icage.agreement import disagreements
+from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.contact_space.engine import ContactSpace
 from icage.engine import Engine
@@ -21,8 +22,20 @@ from icage.formats.case_json import Case, read_case
 from icage.planner import plan
 from sim.attack import Attacks
 from sim.batch import close_many
+from sim.judge import Tolerances
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+from sim.watch import SETTLED, TIMED_OUT
 
 SEED: Final = 0
+
+SECOND_TIME: Final = 3.0
+"""[s] Longest closing in the second engine. There some contacts never come to rest, so an end is
+judged by its pose alone."""
+
+SECOND_NEAR: Final = Tolerances(0.05, 0.1, 0.05, 0.1)
+"""The second engine says which grasp it is, not how exactly: where the fingers wedge, its depth of
+contact is felt a hundredfold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +117,7 @@ def in_physics(row: Row, physical: PhysicalCase) -> Row:
         physical_plan=plan_both(physical.case) if physical.derived else row.planned,
     )
     if effort.closings:
-        closed = _closed(physical, effort.closings, streams, lambda s, x: close_many(s, x, 1))
+        closed = _closed(row, effort.closings, streams, lambda s, x: close_many(s, x, 1), None)
         row = replace(row, closed=closed)
         try:
             row = replace(row, shaken=shake_case(physical, seed))
@@ -114,7 +127,7 @@ def in_physics(row: Row, physical: PhysicalCase) -> Row:
         escape = attacked(physical, effort.attacks, seed, 1, _silent, effort.measuring)
         row = replace(row, escape=escape)
     if effort.second and second_engine():
-        row = replace(row, second=_second(physical, effort.second, seed))
+        row = replace(row, second=_second(row, effort.second, seed))
     return row
 
 
@@ -124,20 +137,35 @@ def second_engine() -> bool:
 
 
 def _closed(
-    physical: PhysicalCase, count: int, streams: list[np.random.Generator], close: Close
+    row: Row,
+    count: int,
+    streams: list[np.random.Generator],
+    close: Close,
+    near: Tolerances | None,
 ) -> tuple[Closed, ...]:
+    assert row.physical is not None
+    assert row.physical_plan is not None
+    other = row.physical_plan.contact_space
     sets = zip(SETS, streams, strict=True)
-    found = [close_set(physical, which, count, rng, close) for which, rng in sets]
+    found = [close_set(row.physical, other, which, count, rng, close, near) for which, rng in sets]
     return tuple(one for one in found if one is not None)
 
 
-def _second(physical: PhysicalCase, count: int, seed: int) -> Second:
+def _second(row: Row, count: int, seed: int) -> Second:
     """The same sets and attacks, fewer of them: this engine has no batch."""
     from sim.second.attack import random_attack_second  # optional, and slow to load
     from sim.second.closing import close_many_second
 
+    def close(scene: Scene, starts: FloatArray) -> ClosingOutcomes:
+        brief = replace(scene.config, max_time=SECOND_TIME)
+        found = close_many_second(replace(scene, config=brief), starts)
+        ending = np.where(found.ending == TIMED_OUT, SETTLED, found.ending)
+        return replace(found, ending=ending)
+
     streams = np.random.default_rng([seed, 6]).spawn(len(SETS) + 1)
-    closed = _closed(physical, count, streams[:-1], close_many_second)
+    closed = _closed(row, count, streams[:-1], close, SECOND_NEAR)
+    physical = row.physical
+    assert physical is not None
     cage = physical.cage
     if cage.sigma_max is None:
         return Second(closed, None)

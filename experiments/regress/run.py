@@ -20,8 +20,10 @@ from experiments.regress.baseline import (
 from experiments.regress.cases import EFFORTS, Effort, Entry, Level, in_folder, shipped
 from experiments.regress.document import row_document
 from experiments.regress.measure import measure
+from experiments.regress.record import Record, record_of
 
 Report = Callable[[str, int, int], None]
+Done = tuple[dict[str, Any], Record, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,8 @@ class Regression:
     """Differences to the baseline, however small the tolerance that they exceed."""
     missing: tuple[str, ...]
     """Cases that the baseline does not know."""
+    records: tuple[Record, ...]
+    """The closings of each case, to be run again."""
 
     @property
     def failed(self) -> bool:
@@ -54,7 +58,7 @@ def regress(
     """
     entries = shipped(level) if folder is None else in_folder(folder)
     was = read_baseline(baseline or baseline_path(level))
-    documents, seconds = _all(entries, EFFORTS[level], workers, report)
+    documents, records, seconds = _all(entries, EFFORTS[level], workers, report)
     changes: list[str] = []
     for row in documents:
         if row["case"] in was:
@@ -62,12 +66,14 @@ def regress(
             row["failures"] += [f"baseline: {line}" for line in found]
             changes += [f"{row['case']}: {line}" for line in found]
     missing = tuple(row["case"] for row in documents if row["case"] not in was)
-    return Regression(level, tuple(documents), tuple(seconds), tuple(changes), missing)
+    return Regression(
+        level, tuple(documents), tuple(seconds), tuple(changes), missing, tuple(records)
+    )
 
 
 def _all(
     entries: Sequence[Entry], effort: Effort, workers: int, report: Report
-) -> tuple[list[dict[str, Any]], list[float]]:
+) -> tuple[list[dict[str, Any]], list[Record], list[float]]:
     workers = min(workers or os.cpu_count() or 1, len(entries))
     report("cases", 0, len(entries))
     if workers == 1:
@@ -79,23 +85,24 @@ def _all(
         spawn = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
             futures = [pool.submit(one_case, entry, effort) for entry in entries]
-            ended: list[Future[tuple[dict[str, Any], float]]] = []
+            ended: list[Future[Done]] = []
 
-            def count(future: Future[tuple[dict[str, Any], float]]) -> None:
+            def count(future: Future[Done]) -> None:
                 ended.append(future)
                 report("cases", len(ended), len(entries))
 
             for future in futures:
                 future.add_done_callback(count)
             done = [future.result() for future in futures]
-    return [row for row, _ in done], [spent for _, spent in done]
+    rows, records, seconds = zip(*done, strict=True)
+    return list(rows), list(records), list(seconds)
 
 
-def one_case(entry: Entry, effort: Effort) -> tuple[dict[str, Any], float]:
-    """The document of one case, and the seconds it took."""
+def one_case(entry: Entry, effort: Effort) -> Done:
+    """The document of one case, its closings, and the seconds it took."""
     began = time.perf_counter()
-    row = row_document(measure(entry, effort))
-    return row, time.perf_counter() - began
+    row = measure(entry, effort)
+    return row_document(row), record_of(row), time.perf_counter() - began
 
 
 def new_baseline(done: Regression) -> dict[str, Any]:

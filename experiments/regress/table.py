@@ -12,6 +12,11 @@ HEAD: Final = (
     "rigid", "guided above", "measured off", "deepest", "held", "second", "verdict",
 )  # fmt: skip
 
+BOTH_HEAD: Final = (
+    "case", *("guaranteed", "rest", "outside", "random", "error", "deepest") * 2
+)  # fmt: skip
+"""The same in both engines: MuJoCo, then Chipmunk2D."""
+
 LEGEND: Final = (
     "discs: radius over the diameter, * derived from point fingers, ** at another grasp of that "
     "hand. guaranteed: closings that ended in the target. rest: in the target + in another grasp "
@@ -28,30 +33,55 @@ def table(rows: Sequence[Mapping[str, Any]]) -> list[tuple[str, ...]]:
     return [HEAD, *(_row(row) for row in rows)]
 
 
+def both_engines(rows: Sequence[Mapping[str, Any]]) -> list[tuple[str, ...]]:
+    """The head and a row per case that both engines ran; no rows if the second is not there."""
+    ran = [row for row in rows if row["second"] is not None]
+    return [BOTH_HEAD, *((row["case"], *_first(row), *_other(row)) for row in ran)] if ran else []
+
+
 def terminal(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """Columns of equal width, then what the columns mean and what did not hold."""
-    lines = table(rows)
-    widths = [max(len(line[k]) for line in lines) for k in range(len(HEAD))]
+    yield from _aligned(table(rows))
+    both = both_engines(rows)
+    if both:
+        yield ""
+        yield BOTH
+        yield from _aligned(both)
+        yield ""
+    yield from _below(rows)
+
+
+def _aligned(lines: list[tuple[str, ...]]) -> Iterator[str]:
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     for line in lines:
         cells = [line[0].ljust(widths[0])]
         cells += [text.rjust(w) for text, w in zip(line[1:], widths[1:], strict=True)]
         yield "  ".join(cells).rstrip()
-    yield from _below(rows)
 
 
 def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Iterator[str]:
     """A page: title, table, legend, bottom line, the command that makes it again."""
-    lines = table(rows)
     yield f"# {title}"
     yield ""
-    yield f"| {' | '.join(lines[0])} |"
-    yield f"|{'---|' * len(HEAD)}"
-    yield from (f"| {' | '.join(line)} |" for line in lines[1:])
+    yield from _piped(table(rows))
     for line in _below(rows):
         yield ""
         yield line
+    both = both_engines(rows)
+    if both:
+        yield ""
+        yield BOTH
+        yield ""
+        yield from _piped(both)
     yield ""
     yield f"    {command}"
+
+
+def _piped(lines: list[tuple[str, ...]]) -> Iterator[str]:
+    cells = [[text.replace("|", "/") for text in line] for line in lines]
+    yield f"| {' | '.join(cells[0])} |"
+    yield f"|{'---|' * len(cells[0])}"
+    yield from (f"| {' | '.join(line)} |" for line in cells[1:])
 
 
 def _below(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
@@ -90,6 +120,11 @@ def bottom_line(rows: Sequence[Mapping[str, Any]]) -> str:
         f"above it; {thin} too thin for physics, {none} with nothing to close into"
     )
 
+
+BOTH: Final = (
+    "Both engines, MuJoCo first, then Chipmunk2D: fewer trials, each its own starts, ends told by "
+    "their pose to 0.05 diameters and 0.1 rad"
+)
 
 THIN: Final = "too_thin_for_physics"
 
@@ -166,6 +201,26 @@ def _held(shake: Mapping[str, Any] | None) -> str:
     if shake is None:
         return "-"
     return f"{'yes' if shake['held'] else 'no'}, {shake['rank']}"
+
+
+def _first(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return _engine(row["closings"], _runs(row, "below").get("random"))
+
+
+def _other(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return _engine(row["second"]["closings"], row["second"]["random_below"])
+
+
+def _engine(closings: Mapping[str, Any], attacks: Mapping[str, Any] | None) -> tuple[str, ...]:
+    off = [closed["position_error"] for closed in closings.values()]
+    deep = [closed["penetration"] for closed in closings.values()]
+    deep += [] if attacks is None else [attacks["penetration"]]
+    return (
+        *(_closings(closings.get(which), which) for which in ("guaranteed", "rest", "outside")),
+        _escapes(attacks),
+        f"{max(off, default=0.0):.0e}",
+        f"{max(deep, default=0.0):.1e}",
+    )
 
 
 def _second(second: Mapping[str, Any] | None) -> str:

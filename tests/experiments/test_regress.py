@@ -188,7 +188,8 @@ def test_tolerances_of_the_baseline(path: str, value: Any, fails: bool) -> None:
 
 def test_not_a_cage_is_checked_for_its_verdict_only() -> None:
     entry = next(e for e in shipped("fast") if e.name == "rectangle_notcage")
-    row, seconds = one_case(entry, CLOSE)
+    row, record, seconds = one_case(entry, CLOSE)
+    assert record == ([], None)
     assert seconds >= 0.0
     assert row["planner"]["verdict"] == "not_a_cage"
     assert "parallel" in row["why_no_physics"]
@@ -243,6 +244,26 @@ def test_command_baseline_and_files(folder: Path, tmp_path: Path, capsys: Any) -
     assert updated.code == 0
     assert "baseline changes: rectangle_notcage: planner.sigma_0" in updated.err
     assert here(capsys, *arguments).code == 0
+
+
+def test_any_closing_can_be_run_again(
+    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(EFFORTS, "fast", replace(EFFORTS["fast"], closings=3, attacks=0, second=2))
+    cases, out = tmp_path / "cases", tmp_path / "out"
+    cases.mkdir()
+    for path in (*case_paths("pliers")[1:2], CASES / "rectangle_notcage.json"):
+        (cases / path.name).write_text(path.read_text())
+    arguments = ("regress", "--fast", "--cases", str(cases), "--baseline", str(tmp_path / "none"))
+    done = here(capsys, *arguments, "--workers", "1", "--out", str(out))
+    assert done.code == 0, done
+    assert "Both engines" in done.out
+    for index, which in enumerate(("guaranteed", "outside")):
+        again = here(capsys, "replay-trial", str(out), str(3 * index + 1))
+        assert again.code == 0, again
+        assert f"{which} set, trial 1" in again.out
+        assert "the same to the last bit" in again.out
+    assert here(capsys, "replay-trial", str(out), "6").code == 2
 
 
 def test_bad_input(folder: Path, tmp_path: Path, capsys: Any) -> None:
