@@ -1,8 +1,8 @@
 """Tables of where the guarantee ends: friction, speed, time step, inertia, compliance.
 
-    python3 -m experiments.limits CASE [TRIALS]
+    python3 -m experiments.limits CASE [TRIALS] [guaranteed|rest]
 
-prints the tables of docs/physics.md for starts drawn from the guaranteed set with seed 0; point
+prints the tables of docs/physics.md for starts drawn from that set of the cage with seed 0; point
 fingers become discs.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from experiments.disc_case import physical_case
 from experiments.inputs import find_case
-from experiments.starts import draw_starts
+from experiments.starts import StartSet, draw_starts
 from sim.config import SimConfig
 from sim.contact_types import supports
 from sim.friction import friction_table
@@ -28,14 +28,14 @@ FRICTION_TIME: Final = 1.0
 """[s] Jammed objects creep and never count as still: the ends after this and after twice this."""
 
 
-def tables(name: str, trials: int, seed: int = 0) -> Iterator[str]:
+def tables(name: str, trials: int, which: StartSet, seed: int = 0) -> Iterator[str]:
     """Lines of both tables; the friction table only for three-edge targets."""
     physical = physical_case(find_case(name))
     case, cage = physical.case, physical.cage
     rng = np.random.default_rng(seed)
-    starts = draw_starts(cage, "guaranteed", trials, rng).placements
+    starts = draw_starts(cage, which, trials, rng).placements
     scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
-    yield f"{case.name}, {trials} starts of the guaranteed set, seed {seed}"
+    yield f"{case.name}, {trials} starts of the {which} set, seed {seed}"
     if supports(case.outline, cage.contacts, case.finger_radius).three_edges:
         brief = replace(scene.config, max_time=FRICTION_TIME)
         rough = Scene(case.outline, cage.hand, case.finger_radius, brief)
@@ -55,6 +55,11 @@ def tables(name: str, trials: int, seed: int = 0) -> Iterator[str]:
         )
 
 
-if __name__ == "__main__":
-    for line in tables(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 40):
+def main(case: str, trials: str = "40", which: str = "guaranteed") -> None:
+    """Print the tables."""
+    for line in tables(case, int(trials), "rest" if which == "rest" else "guaranteed"):
         print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

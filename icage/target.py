@@ -119,7 +119,10 @@ def find_target(
             here = _slid_to(terrain, cells[k], here, wanted)
         moved = shift_between(terrain.hand, wanted, here) / size
         turned = turn_between(wanted, here)
-        if moved > reach or turned > turn or (best is not None and moved >= best.moved):
+        if moved > reach or turned > turn:
+            continue
+        # hundreds of cells may meet in one point, as at the centre of an arc: it is looked at once
+        if best is not None and moved >= best.moved - SAME_POINT:
             continue
         if is_local_minimum(terrain, here, float(value[k, 0])):
             ends = plateau_through(terrain, here, float(value[k, 0]))
