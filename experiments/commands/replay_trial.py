@@ -1,4 +1,4 @@
-"""``icage replay-trial DIR INDEX``: close one recorded trial of a replay again, exactly."""
+"""``icage replay-trial DIR INDEX``: close one recorded trial again, exactly."""
 
 from __future__ import annotations
 
@@ -21,7 +21,12 @@ def add_parser(subparsers: Any) -> None:
         "outcome, steps, end pose, errors and depths with the record. Exit code 1 if anything "
         "differs although all versions are the same.",
     )
-    parser.add_argument("folder", metavar="DIR", type=file_name, help="folder of `icage replay`")
+    parser.add_argument(
+        "folder",
+        metavar="DIR",
+        type=file_name,
+        help="folder of `icage replay` or of `icage regress --out`",
+    )
     parser.add_argument(
         "index", metavar="INDEX", type=row_index,
         help="row in the whole of trials.parquet, from 0",
