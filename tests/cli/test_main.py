@@ -84,6 +84,21 @@ def test_a_traceback_for_those_who_ask(monkeypatch: Any):
         cli.main(["plan", CASE])
 
 
+def wait_until_idle(pid: int) -> None:
+    """Until a process has used no processor time for a second; at most a minute."""
+    stat = Path(f"/proc/{pid}/stat")
+    if not stat.exists():
+        time.sleep(3.0)
+        return
+    last = -1
+    for _ in range(60):
+        time.sleep(1.0)
+        used = sum(map(int, stat.read_text().rpartition(")")[2].split()[11:13]))
+        if used == last:
+            return
+        last = used
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_an_interrupt_is_exit_130_without_a_traceback():
     command = subprocess.Popen(
@@ -95,7 +110,7 @@ def test_an_interrupt_is_exit_130_without_a_traceback():
         # whoever starts tests in the background of a shell has interrupts ignored by inheritance
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    time.sleep(3.0)  # until it waits for its placements
+    wait_until_idle(command.pid)  # it waits for its placements
     command.send_signal(signal.SIGINT)
     out, err = command.communicate(timeout=60)
     assert (command.returncode, out) == (130, "")

@@ -52,7 +52,7 @@ def test_more_targets(first: int) -> None:
         assert not outcome.disagreements + outcome.exceptions, number
 
 
-@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("number", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_discs(number: int) -> None:
     outcome = judge_discs(SEED, number)
     assert not outcome.disagreements + outcome.exceptions

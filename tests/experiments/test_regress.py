@@ -110,6 +110,7 @@ def test_a_finger_radius_off_by_two_percent_is_caught(sound: PhysicalCase) -> No
     assert any(line.startswith("guaranteed: 0 of 12") for line in failures(wrong, CLOSE))
 
 
+@pytest.mark.slow
 def test_a_mirrored_object_is_caught(sound: PhysicalCase) -> None:
     wrong = with_world(sound, outline=mirrored(sound.world.outline))
     assert any(line.startswith("guaranteed: 0 of 12") for line in failures(wrong, CLOSE))
@@ -246,6 +247,7 @@ def test_command_baseline_and_files(folder: Path, tmp_path: Path, capsys: Any) -
     assert here(capsys, *arguments).code == 0
 
 
+@pytest.mark.slow
 def test_any_closing_can_be_run_again(
     tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

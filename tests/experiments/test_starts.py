@@ -86,7 +86,10 @@ def marginals(cage: Cage, rows: FloatArray) -> list[FloatArray]:
     return [rows[:, 0], rows[:, 1], turn, rows[:, 3], third[:, 0], third[:, 1]]
 
 
-@pytest.mark.parametrize(("name", "which"), [("T", "guaranteed"), ("Z_twofold_multi", "rest")])
+@pytest.mark.parametrize(
+    ("name", "which"),
+    [("T", "guaranteed"), pytest.param("Z_twofold_multi", "rest", marks=pytest.mark.slow)],
+)
 def test_starts_are_uniform_like_plain_rejection(name: str, which: StartSet):
     cage, count = cage_of(name), 6_000
     plain = marginals(cage, plain_rejection(cage, which, count, seed=11))

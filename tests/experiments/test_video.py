@@ -80,6 +80,7 @@ def test_a_short_film_without_a_renderer(
     check_film(tmp_path / VIDEO, (0.9, 1.1))
 
 
+@pytest.mark.slow
 def test_a_renderer_that_fails_is_replaced(
     done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

@@ -74,6 +74,7 @@ print(one(1), one(1.0))
 """
 
 
+@pytest.mark.slow
 def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) -> None:
     """And whoever asked is told of a compilation, once, and only where nothing is cached."""
     (tmp_path / "one_for_the_cache.py").write_text("def one(x):\n    return x + 1\n")

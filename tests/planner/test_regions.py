@@ -86,7 +86,9 @@ def test_points_of_the_inner_regions_are_reached(name: str) -> None:
             assert query(cage, rows).in_cage.any()
 
 
-@pytest.mark.parametrize("name", SLICED)
+@pytest.mark.parametrize(
+    "name", [SLICED[0], *(pytest.param(name, marks=pytest.mark.slow) for name in SLICED[1:])]
+)
 def test_slices_fill_the_regions_from_inside(name: str) -> None:
     """Bounded pockets of (x, y) at fixed theta and sigma: exact polygons, an inner bound."""
     case = solved(name)

@@ -30,6 +30,7 @@ def test_point_targets() -> None:
     assert len({o.family for o in outcomes}) == 7
 
 
+@pytest.mark.slow
 def test_disc_targets() -> None:
     check([disc_targets.judge(SEED, number, (4, 8)) for number in range(8)])
 

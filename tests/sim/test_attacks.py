@@ -102,6 +102,7 @@ def test_any_number_of_threads_and_any_neighbours_give_the_same():
     assert not np.array_equal(one.end, random_attacks(opening, 4, 2, 0.5).end)
 
 
+@pytest.mark.slow
 def test_the_way_out_works_above_sigma_max_and_not_below():
     scene, cage = t_cage()
     assert cage.sigma_max is not None
