@@ -55,18 +55,7 @@ def outcomes(scene: Scene, start: FloatArray, watch: Watch, states: FloatArray) 
     """Read off the end of N closings from their integration states (N, nstate)."""
     forces, contacts = _press(scene, watch.ending, states)
     positions = np.array(states[:, 1:7])  # after the time
-    return ClosingOutcomes(
-        start=np.array(start),
-        end=scene.placements(positions),
-        ending=watch.ending.copy(),
-        steps=watch.steps.copy(),
-        penetration_max=watch.penetration_max.copy(),
-        penetration_rest=watch.penetration_rest.copy(),
-        shape_error_max=watch.shape_error_max.copy(),
-        sigma_rise_max=watch.sigma_rise_max.copy(),
-        finger_forces=forces,
-        contacts=contacts,
-    )
+    return ClosingOutcomes.seen(watch, start, scene.placements(positions), forces, contacts)
 
 
 def _press(scene: Scene, ending: IntArray, states: FloatArray) -> tuple[FloatArray, IntArray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
-from sim.watch import ENDINGS
+from sim.watch import ENDINGS, Watch
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +83,25 @@ class ClosingOutcomes:
             sigma_rise_max=float(self.sigma_rise_max[i]),
             finger_forces=self.finger_forces[i],
             contacts=int(self.contacts[i]),
+        )
+
+    @classmethod
+    def seen(
+        cls, watch: Watch, start: FloatArray, end: FloatArray, forces: FloatArray,
+        contacts: IntArray,
+    ) -> ClosingOutcomes:  # fmt: skip
+        """What was watched, with placements (N, 4) and what presses at the end, of any engine."""
+        return cls(
+            start=np.array(start),
+            end=end,
+            ending=watch.ending.copy(),
+            steps=watch.steps.copy(),
+            penetration_max=watch.penetration_max.copy(),
+            penetration_rest=watch.penetration_rest.copy(),
+            shape_error_max=watch.shape_error_max.copy(),
+            sigma_rise_max=watch.sigma_rise_max.copy(),
+            finger_forces=forces,
+            contacts=contacts,
         )
 
     @classmethod

@@ -41,15 +41,4 @@ def close_many_second(
             watch.observe(only, states[:, :6], states[:, 6:])
         if watch.ending[i] != DIVERGED:
             forces[i], contacts[i] = world.press()
-    return ClosingOutcomes(
-        start=np.array(rows),
-        end=scene.placements(states[:, :6]),
-        ending=watch.ending.copy(),
-        steps=watch.steps.copy(),
-        penetration_max=watch.penetration_max.copy(),
-        penetration_rest=watch.penetration_rest.copy(),
-        shape_error_max=watch.shape_error_max.copy(),
-        sigma_rise_max=watch.sigma_rise_max.copy(),
-        finger_forces=forces,
-        contacts=contacts,
-    )
+    return ClosingOutcomes.seen(watch, rows, scene.placements(states[:, :6]), forces, contacts)
