@@ -38,6 +38,9 @@ ATTACKERS: Final = ("random", "guided", "rigid")
 MOST_TREES: Final = 8
 """Tree searches a level: they take up to a second each, and a few are as good as many."""
 
+MOST_REPEATS: Final = 12
+"""Random attacks at one opening of a measurement."""
+
 Verdict = Literal["ok", "failed", "too_thin_for_physics", "no_derived_case"]
 Report = Callable[[str, int, int], None]
 
@@ -192,7 +195,7 @@ def _attacked(
         )  # fmt: skip
         return Assault(name, below, above, found)
 
-    random = assault("random", arena.random, attacks, 2, max(4, attacks // 4))
+    random = assault("random", arena.random, attacks, 2, min(max(4, attacks // 4), MOST_REPEATS))
     assaults = [random, assault("guided", arena.guided, attacks, 4, 3)]
     rigid = arena.rigid(random.below)
     if rigid is not None:

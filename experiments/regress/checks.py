@@ -25,7 +25,7 @@ def _checks(row: Row) -> Iterator[str]:
         for line in row.physical_plan.differences:
             yield f"the two methods disagree on the derived case: {line}"
     for closed in row.closed:
-        yield from _closings(closed, "")
+        yield from _closings(closed, "", row.seed)
     if row.escape is not None:
         yield from (sentence.split(": ", 1)[-1] for sentence in row.escape.failures)
     if row.shake_error is not None:
@@ -34,7 +34,7 @@ def _checks(row: Row) -> Iterator[str]:
         yield from (f"shake: {sentence}" for sentence in row.shaken.failures)
     if row.second is not None:
         for closed in row.second.closed:
-            yield from _closings(closed, "second engine: ")
+            yield from _closings(closed, "second engine: ", row.seed)
         attacks = row.second.attacks
         if attacks is not None and (attacks.escapes or attacks.diverged):
             yield (
@@ -43,7 +43,7 @@ def _checks(row: Row) -> Iterator[str]:
             )
 
 
-def _closings(closed: Closed, engine: str) -> Iterator[str]:
+def _closings(closed: Closed, engine: str, seed: int) -> Iterator[str]:
     which, counts = closed.run.which, closed.run.counts
     name = f"{engine}{which}"
     if which == "guaranteed" and counts["target"] < closed.trials:
@@ -58,6 +58,6 @@ def _closings(closed: Closed, engine: str) -> Iterator[str]:
     if closed.let_go:
         yield f"{name}: {closed.let_go} let go of an object that the query had called caged"
     if counts["diverged"]:
-        yield f"{name}: {counts['diverged']} diverged"
+        yield f"{name}: {counts['diverged']} diverged (seed {seed})"
     if closed.penetration > (SECOND_DEEPEST if engine else DEEPEST_MOVING):
         yield f"{name}: a finger sank {closed.penetration:.2g} diameters in"

@@ -268,6 +268,13 @@ def test_any_closing_can_be_run_again(
     assert here(capsys, "replay-trial", str(out), "6").code == 2
 
 
+@pytest.mark.slow
+def test_the_fast_regression_is_as_committed(capsys: Any) -> None:
+    """Every case of ``icage regress --fast`` holds and is within its baseline."""
+    done = here(capsys, "regress", "--fast", "--workers", "1")
+    assert (done.code, done.err) == (0, ""), done
+
+
 def test_bad_input(folder: Path, tmp_path: Path, capsys: Any) -> None:
     assert "not a folder" in here(capsys, "regress", "--cases", "nowhere").error_line()
     assert "no case file" in here(capsys, "regress", "--cases", str(tmp_path)).error_line()
