@@ -24,6 +24,7 @@ from sim.attack import Attacks
 from sim.batch import close_many
 from sim.judge import Tolerances
 from sim.outcome import ClosingOutcomes
+from sim.random_attack import RandomPull
 from sim.scene import Scene
 from sim.watch import SETTLED, TIMED_OUT
 
@@ -32,6 +33,9 @@ SEED: Final = 0
 SECOND_TIME: Final = 3.0
 """[s] Longest closing in the second engine. There some contacts never come to rest, so an end is
 judged by its pose alone."""
+
+SECOND_ATTACK: Final = 5.0
+"""[s] Of one attack in the second engine, a third of the usual: its steps are taken in Python."""
 
 SECOND_NEAR: Final = Tolerances(0.05, 0.1, 0.05, 0.1)
 """The second engine says which grasp it is, not how exactly: where the fingers wedge, its depth of
@@ -172,8 +176,9 @@ def _second(row: Row, count: int, seed: int) -> Second:
     scene = physical.world.scene()
     level = at(cage.sigma_max, cage.sigma_0, -1) / scene.thing.unit
     start = scene.start_positions(cage.target_placement.as_array())
+    pull = RandomPull(duration=SECOND_ATTACK)
     attacks = random_attack_second(
-        scene, np.repeat(start, count, axis=0), np.full(count, level), streams[-1]
+        scene, np.repeat(start, count, axis=0), np.full(count, level), streams[-1], pull
     )
     return Second(closed, attacks)
 
