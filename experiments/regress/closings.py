@@ -31,8 +31,9 @@ SETS: Final[tuple[StartsOf, ...]] = ("guaranteed", "rest", "outside")
 Close = Callable[[Scene, FloatArray], ClosingOutcomes]
 """An engine's closings from starts (N, 4)."""
 
-_CHUNK, _CHUNKS = 4000, 200
-"""Placements tried at once, and how often, to find some outside."""
+_CHUNK, _CHUNKS = 2000, 6
+"""Placements tried at once, and how often, to find some outside: the first query in a part of space
+outside the cage takes milliseconds, and there is a lot of it."""
 
 _WIDE: Final = 1.5
 """[1] Hands outside are up to this times sigma_max, or the largest of the cage, wide."""
