@@ -1,9 +1,10 @@
-"""Disc fingers: 4, 8, 32, 64 segments a quadrant, raw = merged, at 4 rotations, random targets.
+r"""Disc fingers: 4, 8, 32, 64 segments a quadrant, raw = merged, at 4 rotations, random targets.
 
-    python -m benchmarks.sweeps.disc_targets --json benchmarks/sweeps/disc_targets.json
+    python -m benchmarks.sweeps.disc_targets --every-resolution --log discs.jsonl \
+        --json benchmarks/sweeps/disc_targets.json
 
-Target k takes the (k mod 4)-th of these resolutions; ``--every-resolution`` gives each target all
-four (four times the work).
+takes an hour and a half on one core (the log lets it go on after a kill). Without
+``--every-resolution`` target k takes the (k mod 4)-th of these resolutions only.
 
 The outline is turned and grown anew each time, so that the offset is part of what is compared.
 Inner (chords) and outer (tangents) polygons; sigma_max(inner) <= sigma_max(outer) at equal and at

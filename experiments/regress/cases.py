@@ -47,7 +47,7 @@ class Effort:
 
 EFFORTS: Final = {
     "fast": Effort("fast", 40, 8, ("guided",), 4),
-    "default": Effort("default", 100, 24, ("guided",), 10),
+    "default": Effort("default", 100, 24, ("guided",), 6),
     "full": Effort("full", 200, 200, ATTACKERS, 20),
 }
 
