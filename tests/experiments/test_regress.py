@@ -142,7 +142,11 @@ def test_shipped_cases() -> None:
 ROW = {
     "planner": {"verdict": "cage", "sigma_max": 2.0, "grasps": 3},
     "closings": {"guaranteed": {"trials": 100, "target": 100, "penetration": 5e-4}},
-    "attacks": {"guided": {"below": {"attacks": 24, "escapes": 0}, "measured": [1.999, 2.001]}},
+    "attacks": {
+        "below": 1.99,
+        "solref": [5e-4, 2.0],
+        "guided": {"below": {"attacks": 24, "escapes": 0}, "measured": [1.999, 2.001]},
+    },
     "shake": {"held": True, "rank": 3},
     "second": {"random_below": {"attacks": 10, "escapes": 0}},
 }
@@ -173,6 +177,8 @@ def changed(path: str, value: Any) -> dict[str, Any]:
         ("attacks.guided.measured", [1.998, 2.001], False),
         ("attacks.guided.measured", [1.990, 2.001], True),
         ("attacks.guided.measured", [1.999, None], True),
+        ("attacks.below", 1.991, True),
+        ("attacks.solref", [1e-3, 1.0], True),
         ("shake.held", False, True),
         ("shake.rank", 2, True),
         ("second", None, False),
