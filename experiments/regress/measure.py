@@ -30,10 +30,6 @@ from sim.watch import SETTLED, TIMED_OUT
 
 SEED: Final = 0
 
-SECOND_TIME: Final = 3.0
-"""[s] Longest closing in the second engine. There some contacts never come to rest, so an end is
-judged by its pose alone."""
-
 SECOND_ATTACK: Final = 5.0
 """[s] Of one attack in the second engine, a third of the usual: its steps are taken in Python."""
 
@@ -161,8 +157,8 @@ def _second(row: Row, count: int, seed: int) -> Second:
     from sim.second.closing import close_many_second
 
     def close(scene: Scene, starts: FloatArray) -> ClosingOutcomes:
-        brief = replace(scene.config, max_time=SECOND_TIME)
-        found = close_many_second(replace(scene, config=brief), starts)
+        found = close_many_second(scene, starts)
+        # there some contacts never come to rest: such an end is judged by its pose alone
         ending = np.where(found.ending == TIMED_OUT, SETTLED, found.ending)
         return replace(found, ending=ending)
 
