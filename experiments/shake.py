@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from experiments.disc_case import PhysicalCase
+from experiments.starts import SamplingError, draw_starts
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.errors import IcageError
@@ -122,7 +123,8 @@ def _wrenches(found: Touches, qpos: FloatArray) -> FloatArray:
 
 
 def start_near_target(cage: Cage, held: Supports, rng: np.random.Generator) -> Placement:
-    """A random placement next to the target, clear of the object, in the guaranteed set.
+    """A random placement of the guaranteed set, clear of the object; next to the target if one is
+    found there, else anywhere in the set.
 
     Raises
     ------
@@ -141,7 +143,10 @@ def start_near_target(cage: Cage, held: Supports, rng: np.random.Generator) -> P
         if len(rows):
             return Placement(*rows[0].tolist())
         wide *= 0.5
-    raise ShakeError("no start next to the target closes into it alone; its cage is too thin")
+    try:
+        return Placement(*draw_starts(cage, "guaranteed", 1, rng).placements[0].tolist())
+    except SamplingError as error:
+        raise ShakeError(f"no start closes into the target alone: {error}") from error
 
 
 def _candidates(cage: Cage, held: Supports, rng: np.random.Generator, wide: float) -> FloatArray:
