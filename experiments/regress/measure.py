@@ -30,6 +30,9 @@ from sim.watch import SETTLED, TIMED_OUT
 
 SEED: Final = 0
 
+SECOND_TIME: Final = 8.0
+"""[s] Longest closing in the second engine, which is ten times slower."""
+
 SECOND_ATTACK: Final = 5.0
 """[s] Of one attack in the second engine, a third of the usual: its steps are taken in Python."""
 
@@ -157,7 +160,8 @@ def _second(row: Row, count: int, seed: int) -> Second:
     from sim.second.closing import close_many_second
 
     def close(scene: Scene, starts: FloatArray) -> ClosingOutcomes:
-        found = close_many_second(scene, starts)
+        brief = replace(scene.config, max_time=SECOND_TIME)
+        found = close_many_second(replace(scene, config=brief), starts)
         # there some contacts never come to rest: such an end is judged by its pose alone
         ending = np.where(found.ending == TIMED_OUT, SETTLED, found.ending)
         return replace(found, ending=ending)
