@@ -109,3 +109,14 @@ def on_supports(outline: Outline, held: Supports, fingers: FloatArray) -> bool:
         if not 0.0 < share[j] < 1.0:
             return False
     return True
+
+
+def on_others(outline: Outline, held: Supports, fingers: FloatArray, radius: float) -> bool:
+    """Whether a finger (3, 2) has come up against an edge that it did not rest on."""
+    reach = radius + REACH * outline.diameter
+    for k in range(3):
+        points, _ = feet(outline, fingers[k])
+        distance = np.hypot(*(points - fingers[k]).T)
+        if (np.delete(distance, held.edge[held.finger == k]) <= reach).any():
+            return True
+    return False

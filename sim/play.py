@@ -17,7 +17,7 @@ from scipy.optimize import linprog
 from icage.arrays import FloatArray
 from icage.errors import GeometryError
 from icage.hand import Placement
-from sim.contact_types import Supports, on_supports
+from sim.contact_types import Supports, on_others, on_supports
 from sim.engine import mj, no_log
 from sim.rigid_hand import disc_depths, rigid_data, rigid_model
 from sim.scene import Scene
@@ -42,7 +42,8 @@ class Play:
     measured, predicted:
         (2,) of the engine, and of the edges that the fingers rest on, produced to lines.
     on_edges:
-        Whether at both ends every finger stood over the inside of its edges: then both must agree.
+        Whether at both ends every finger stood over the inside of its edges and had come up against
+        no other: then both must agree.
     penetration:
         [diameter] Deepest disc at the ends: it acts as so much more delta.
     """
@@ -134,5 +135,7 @@ def measure_play(scene: Scene, held: Supports, contacts: FloatArray, delta: floa
         ends.append(abs(float(pose[2] - start[5])))
         deepest = max(deepest, float(disc_depths(scene, sigma, pose).max()))
         place = scene.placements(np.concatenate([start[:3], pose])[None, :])
-        inside = inside and on_supports(scene.outline, held, scene.hand.fingers(place[0]))
+        fingers = scene.hand.fingers(place[0])
+        inside = inside and on_supports(scene.outline, held, fingers)
+        inside = inside and not on_others(scene.outline, held, fingers, scene.finger_radius)
     return Play(delta, (ends[0], ends[1]), predicted, inside, deepest)
