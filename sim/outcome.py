@@ -90,10 +90,14 @@ class ClosingOutcomes:
         cls, watch: Watch, start: FloatArray, end: FloatArray, forces: FloatArray,
         contacts: IntArray,
     ) -> ClosingOutcomes:  # fmt: skip
-        """What was watched, with placements (N, 4) and what presses at the end, of any engine."""
+        """What was watched, with placements (N, 4) and what presses at the end, of any engine.
+
+        The last step of a hand that shuts on nothing may carry its slides past zero; such a hand
+        has size 0.
+        """
         return cls(
             start=np.array(start),
-            end=end,
+            end=np.column_stack([end[:, :3], np.maximum(end[:, 3], 0.0)]),
             ending=watch.ending.copy(),
             steps=watch.steps.copy(),
             penetration_max=watch.penetration_max.copy(),

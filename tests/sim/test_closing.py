@@ -109,9 +109,11 @@ def test_the_unit_and_place_of_the_case_do_not_matter() -> None:
 
 def test_an_empty_hand_shuts_and_counts_as_escaped() -> None:
     grasp = t_shape()
-    closings = close_many(grasp.scene(), np.array([[40.0, 0.0, 0.2, 2.0]]))
-    assert ENDINGS[int(closings.ending[0])] == "pinched"
-    assert judge(closings, [grasp], grasp.outline).counts()["escaped"] == 1
+    starts = np.array([[40.0, 0.0, 0.2, sigma] for sigma in np.linspace(2.0, 2.01, 8)])
+    closings = close_many(grasp.scene(), starts)
+    assert {ENDINGS[ending] for ending in closings.ending} == {"pinched"}
+    assert judge(closings, [grasp], grasp.outline).counts()["escaped"] == 8
+    assert all(closings[i].end.sigma >= 0.0 for i in range(8))  # the last step overshoots zero
 
 
 def test_a_closing_that_is_cut_short_has_timed_out() -> None:
