@@ -19,14 +19,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import shapely
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.engine import MjModel, mj, no_log
 from sim.held_hand import held_batch
 from sim.scene import Scene
-from sim.watch import depths
+from sim.seen import depths, fingers_seen, hull_of, separated
 
 RUNNING, ESCAPED, HELD, DIVERGED = range(4)
 ATTACK_ENDINGS = ("running", "escaped", "held", "diverged")
@@ -97,6 +96,77 @@ class Attacks:
         return int((self.ending == DIVERGED).sum())
 
 
+@dataclass(frozen=True, slots=True)
+class Lookout:
+    """The running record of N attacks on one scene, a row each; updated in place.
+
+    Attributes
+    ----------
+    openings:
+        (N,) [diameter] where the stop is.
+    steps, ending:
+        (N,) integers; ``ending`` is a code into ``ATTACK_ENDINGS``.
+    """
+
+    scene: Scene
+    openings: FloatArray
+    steps: IntArray
+    ending: IntArray
+    _hull: FloatArray
+    _seen: FloatArray
+
+    @classmethod
+    def over(cls, scene: Scene, openings: FloatArray) -> Lookout:
+        """Start watching attacks at openings (N,) [diameter]."""
+        count = len(openings)
+        return cls(
+            scene,
+            np.array(openings),
+            steps=np.zeros(count, dtype=np.int64),
+            ending=np.full(count, RUNNING, dtype=np.int64),
+            _hull=hull_of(scene.thing.vertices),
+            _seen=np.zeros((count, 2)),
+        )
+
+    def look(self, ids: IntArray, step: int, qpos: FloatArray, qvel: FloatArray) -> None:
+        """Look at the attacks ``ids`` after step number ``step``; qpos and qvel are (N, 6)."""
+        scene, kinematics = self.scene, self.scene.kinematics
+        look: Callable[..., None] = _look
+        look(
+            ids,
+            qpos,
+            qvel,
+            self.openings,
+            scene.thing.vertices,
+            self._hull,
+            scene.finger_radius / scene.thing.unit,
+            kinematics.directions,
+            kinematics.tendon_coefficients,
+            SHUT / kinematics.longest_side,
+            step % LOOK_EVERY == 0,
+            self._seen,
+            self.steps,
+            self.ending,
+        )
+
+    @property
+    def running(self) -> IntArray:
+        """Ids of the attacks that have not ended."""
+        return np.flatnonzero(self.ending == RUNNING)
+
+    def attacks(self, end: FloatArray) -> Attacks:
+        """What became of them, at ``end`` (N, 6); those still running are held."""
+        self.ending[self.running] = HELD
+        return Attacks(
+            self.openings,
+            self.ending,
+            self.steps,
+            penetration_max=self._seen[:, 0],
+            rise_max=self._seen[:, 1],
+            end=end,
+        )
+
+
 def attack(
     scene: Scene,
     model: MjModel,
@@ -111,18 +181,13 @@ def attack(
     number of threads (0: one per core).
     """
     count = len(starts)
-    hull = hull_of(scene.thing.vertices)
-    radius = scene.finger_radius / scene.thing.unit
-    kinematics = scene.kinematics
-    ending = np.full(count, RUNNING, dtype=np.int64)
-    steps = np.zeros(count, dtype=np.int64)
-    seen = np.zeros((count, 2))
+    lookout = Lookout.over(scene, openings)
+    ending = lookout.ending
     batch = held_batch(model, starts, openings, threads)
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")
     applied, control = batch.bind("qfrc_applied"), batch.bind("ctrl")
     wrench, motor = np.zeros((count, 3)), np.zeros(count)
-    running = np.arange(count)
-    look: Callable[..., None] = _look
+    running = lookout.running
     with no_log():
         for step in range(driver.max_steps):
             given_up = driver.drive(running, step, positions, wrench, motor)
@@ -132,71 +197,15 @@ def attack(
                 batch.step(running.astype(np.int32))
             except mj.batch.SimulationError as error:
                 ending[error.ids] = DIVERGED
-            look(
-                running,
-                positions,
-                velocities,
-                openings,
-                scene.thing.vertices,
-                hull,
-                radius,
-                kinematics.directions,
-                kinematics.tendon_coefficients,
-                SHUT / kinematics.longest_side,
-                step % LOOK_EVERY == 0,
-                seen,
-                steps,
-                ending,
-            )
+            lookout.look(running, step, positions, velocities)
             if step % LOOK_EVERY == 0:
                 warned = batch.warning[running, :, 1].any(axis=1)
                 ending[running[warned]] = DIVERGED
             ending[given_up[ending[given_up] == RUNNING]] = HELD
-            running = np.flatnonzero(ending == RUNNING)
+            running = lookout.running
             if not len(running):
                 break
-    ending[running] = HELD
-    return Attacks(
-        np.array(openings), ending, steps, seen[:, 0], seen[:, 1], np.array(positions, copy=True)
-    )
-
-
-def hull_of(vertices: FloatArray) -> FloatArray:
-    """Convex hull (h, 2) of a polygon (n, 2), counterclockwise."""
-    hull = shapely.MultiPoint(vertices).convex_hull
-    return np.array(shapely.get_coordinates(hull.normalize())[:-1][::-1])
-
-
-@njit(cache=True)
-def separated(
-    hull: FloatArray, fingers: FloatArray, radius: float
-) -> bool:  # pragma: no cover - compiled
-    """Whether a line parallel to a side of either has the hull (h, 2) and all discs apart.
-
-    Sides of the hull and of the triangle of fingers (3, 2); sufficient, not necessary, for discs.
-    """
-    count = hull.shape[0]
-    for j in range(count + 3):
-        if j < count:
-            a, b = hull[j], hull[(j + 1) % count]
-        else:
-            a, b = fingers[j - count], fingers[(j - count + 1) % 3]
-        nx, ny = b[1] - a[1], a[0] - b[0]
-        length = math.hypot(nx, ny)
-        if length < 1e-12:
-            continue
-        nx, ny = nx / length, ny / length
-        low_h, high_h = math.inf, -math.inf
-        for i in range(count):
-            along = nx * hull[i, 0] + ny * hull[i, 1]
-            low_h, high_h = min(low_h, along), max(high_h, along)
-        low_f, high_f = math.inf, -math.inf
-        for k in range(3):
-            along = nx * fingers[k, 0] + ny * fingers[k, 1]
-            low_f, high_f = min(low_f, along), max(high_f, along)
-        if low_f - radius > high_h or low_h > high_f + radius:
-            return True
-    return False
+    return lookout.attacks(np.array(positions, copy=True))
 
 
 @njit(cache=True)
@@ -219,14 +228,10 @@ def _look(
     fingers, depth = np.empty((3, 2)), np.empty(3)
     for i in ids:
         steps[i] += 1
-        cos, sin = math.cos(qpos[i, 5]), math.sin(qpos[i, 5])
+        fingers_seen(directions, qpos[i], fingers)
         sigma, total = 0.0, 0.0
         for k in range(3):
             sigma += coefficients[k] * qpos[i, k]
-            x = directions[k, 0] * qpos[i, k] - qpos[i, 3]
-            y = directions[k, 1] * qpos[i, k] - qpos[i, 4]
-            fingers[k, 0] = cos * x + sin * y
-            fingers[k, 1] = cos * y - sin * x
         for k in range(6):
             total += abs(qvel[i, k]) + abs(qpos[i, k])
         if not math.isfinite(total):

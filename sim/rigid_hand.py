@@ -11,7 +11,7 @@ import numpy as np
 from icage.arrays import FloatArray
 from sim.engine import MjData, MjModel, mj
 from sim.scene import Scene
-from sim.watch import depths
+from sim.seen import depths
 
 
 def rigid_model(scene: Scene, sigma: float) -> MjModel:

@@ -19,9 +19,9 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray
-from sim.attack import ESCAPED, HELD, Attacks, hull_of, separated
+from sim.attack import ESCAPED, HELD, Attacks
 from sim.scene import Scene
-from sim.watch import depths
+from sim.seen import depths, hull_of, separated, turn_back
 
 CLEAR = 1e-5
 """[diameter] A finger this deep still counts as clear: poses of the simulator touch."""
@@ -113,12 +113,9 @@ def _shape(scene: Scene, opening: float) -> tuple[FloatArray, FloatArray, float]
 def _seen(
     fingers: FloatArray, x: float, y: float, turn: float
 ) -> FloatArray:  # pragma: no cover - compiled
-    """Fingers in the object's axes."""
-    out = np.empty((3, 2))
-    cos, sin = math.cos(turn), math.sin(turn)
-    for k in range(3):
-        u, v = fingers[k, 0] - x, fingers[k, 1] - y
-        out[k, 0], out[k, 1] = cos * u + sin * v, cos * v - sin * u
+    """Fingers (3, 2) in the object's axes."""
+    out = fingers.copy()
+    turn_back(out, x, y, turn)
     return out
 
 

@@ -15,6 +15,7 @@ from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.scene import Scene
+from sim.seen import depths, fingers_seen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,41 +30,6 @@ engine's meshes, a thousandth of what a step moves."""
 
 (_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
 _FIELDS = 6
-
-
-@njit(cache=True)
-def depths(
-    vertices: FloatArray, fingers: FloatArray, radius: float, out: FloatArray
-) -> None:  # pragma: no cover - compiled
-    """out[k] = how deep disc k reaches into the polygon; negative: its distance from it.
-
-    ``vertices`` (n, 2), ``fingers`` (m, 2) centres, one unit. Depth = radius - signed distance of
-    the centre from the outline, positive outside.
-    """
-    count = vertices.shape[0]
-    for k in range(fingers.shape[0]):
-        x, y = fingers[k, 0], fingers[k, 1]
-        nearest = math.inf
-        inside = False
-        ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
-        for j in range(count):
-            bx, by = vertices[j, 0] - x, vertices[j, 1] - y
-            ex, ey = bx - ax, by - ay
-            along = -(ax * ex + ay * ey)
-            square = ex * ex + ey * ey
-            if along <= 0.0:
-                distance = ax * ax + ay * ay
-            elif along >= square:
-                distance = bx * bx + by * by
-            else:
-                cross = ax * ey - ay * ex
-                distance = cross * cross / square
-            nearest = min(nearest, distance)
-            if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
-                inside = not inside
-            ax, ay = bx, by
-        signed = math.sqrt(nearest)
-        out[k] = radius + signed if inside else radius - signed
 
 
 @njit(cache=True)
@@ -89,14 +55,10 @@ def _observe(
     depth = np.empty(3)
     for i in ids:
         steps[i] += 1
-        turn_cos, turn_sin = math.cos(qpos[i, 5]), math.sin(qpos[i, 5])
+        fingers_seen(directions, qpos[i], fingers)
         sigma = 0.0
         for k in range(3):
             sigma += coefficients[k] * qpos[i, k]
-            x = directions[k, 0] * qpos[i, k] - qpos[i, 3]
-            y = directions[k, 1] * qpos[i, k] - qpos[i, 4]
-            fingers[k, 0] = turn_cos * x + turn_sin * y
-            fingers[k, 1] = turn_cos * y - turn_sin * x
         shape = 0.0
         for k in range(3):
             shape = max(shape, abs(qpos[i, k] - lengths[k] * sigma))

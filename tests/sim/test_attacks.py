@@ -10,13 +10,14 @@ import pytest
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.planner import plan
-from sim.attack import DIVERGED, ESCAPED, HELD, Attacks, attack, hull_of, separated
+from sim.attack import DIVERGED, ESCAPED, HELD, Attacks, attack
 from sim.guided_attack import GuidedDriver, object_path
 from sim.held_hand import held_batch, held_model
 from sim.measure import measure
 from sim.random_attack import RandomDriver, RandomPull
 from sim.rigid_search import CLEAR, clear_poses, search_many, search_tree
 from sim.scene import Scene
+from sim.seen import hull_of, separated
 from tests.sim.grasps import t_shape
 
 

@@ -1,0 +1,114 @@
+"""The hand as the object sees it: finger centres in its axes, how deep each disc is, who is apart.
+
+All in diameters, from poses and the true outline alone; nothing is asked of the engine.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+from numba import njit
+
+from icage.arrays import FloatArray
+
+
+@njit(cache=True)
+def turn_back(
+    points: FloatArray, x: float, y: float, turn: float
+) -> None:  # pragma: no cover - compiled
+    """Points (m, 2) of the palm's frame, in place, in the axes of an object at x, y and ``turn``.
+
+    R(turn)^T (p - (x, y)); ``turn`` in [rad].
+    """
+    cos, sin = math.cos(turn), math.sin(turn)
+    for k in range(points.shape[0]):
+        u, v = points[k, 0] - x, points[k, 1] - y
+        points[k, 0], points[k, 1] = cos * u + sin * v, cos * v - sin * u
+
+
+@njit(cache=True)
+def fingers_seen(
+    directions: FloatArray, qpos: FloatArray, out: FloatArray
+) -> None:  # pragma: no cover - compiled
+    """``out`` (3, 2) = finger centres in the object's axes, from its centroid.
+
+    ``directions`` (3, 2) of the slides, ``qpos`` (6,) = three slides, object's x, y, turn.
+    """
+    for k in range(3):
+        out[k, 0], out[k, 1] = directions[k, 0] * qpos[k], directions[k, 1] * qpos[k]
+    turn_back(out, qpos[3], qpos[4], qpos[5])
+
+
+@njit(cache=True)
+def depths(
+    vertices: FloatArray, fingers: FloatArray, radius: float, out: FloatArray
+) -> None:  # pragma: no cover - compiled
+    """out[k] = how deep disc k reaches into the polygon; negative: its distance from it.
+
+    ``vertices`` (n, 2), ``fingers`` (m, 2) centres, one unit. Depth = radius - signed distance of
+    the centre from the outline, positive outside.
+    """
+    count = vertices.shape[0]
+    for k in range(fingers.shape[0]):
+        x, y = fingers[k, 0], fingers[k, 1]
+        nearest = math.inf
+        inside = False
+        ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
+        for j in range(count):
+            bx, by = vertices[j, 0] - x, vertices[j, 1] - y
+            ex, ey = bx - ax, by - ay
+            along = -(ax * ex + ay * ey)
+            square = ex * ex + ey * ey
+            if along <= 0.0:
+                distance = ax * ax + ay * ay
+            elif along >= square:
+                distance = bx * bx + by * by
+            else:
+                cross = ax * ey - ay * ex
+                distance = cross * cross / square
+            nearest = min(nearest, distance)
+            if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
+                inside = not inside
+            ax, ay = bx, by
+        signed = math.sqrt(nearest)
+        out[k] = radius + signed if inside else radius - signed
+
+
+def hull_of(vertices: FloatArray) -> FloatArray:
+    """Convex hull (h, 2) of a polygon (n, 2), counterclockwise."""
+    hull = shapely.MultiPoint(vertices).convex_hull
+    return np.array(shapely.get_coordinates(hull.normalize())[:-1][::-1])
+
+
+@njit(cache=True)
+def separated(
+    hull: FloatArray, fingers: FloatArray, radius: float
+) -> bool:  # pragma: no cover - compiled
+    """Whether a line parallel to a side of either has the hull (h, 2) and all discs apart.
+
+    Sides of the hull and of the triangle of fingers (3, 2); sufficient, not necessary, for discs.
+    """
+    count = hull.shape[0]
+    for j in range(count + 3):
+        if j < count:
+            a, b = hull[j], hull[(j + 1) % count]
+        else:
+            a, b = fingers[j - count], fingers[(j - count + 1) % 3]
+        nx, ny = b[1] - a[1], a[0] - b[0]
+        length = math.hypot(nx, ny)
+        if length < 1e-12:
+            continue
+        nx, ny = nx / length, ny / length
+        low_h, high_h = math.inf, -math.inf
+        for i in range(count):
+            along = nx * hull[i, 0] + ny * hull[i, 1]
+            low_h, high_h = min(low_h, along), max(high_h, along)
+        low_f, high_f = math.inf, -math.inf
+        for k in range(3):
+            along = nx * fingers[k, 0] + ny * fingers[k, 1]
+            low_f, high_f = min(low_f, along), max(high_f, along)
+        if low_f - radius > high_h or low_h > high_f + radius:
+            return True
+    return False
