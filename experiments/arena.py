@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from experiments.disc_case import PhysicalCase
 from icage.arrays import FloatArray
 from sim.attack import HELD, Attacks, attack
-from sim.config import SimConfig
 from sim.engine import MjModel
 from sim.guided_attack import GuidedDriver, object_path
 from sim.held_hand import held_model
@@ -18,9 +16,6 @@ from sim.measure import AttackAt
 from sim.random_attack import RandomDriver
 from sim.rigid_search import clear_poses, search_many
 from sim.scene import Scene
-
-TIME_STEP: Final = 1e-3
-"""[s] As for closings: the penetration, a false opening, is about speed (0.5 / s) times this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +42,7 @@ class Arena:
     @classmethod
     def of(cls, physical: PhysicalCase, below: float, threads: int) -> Arena:
         """The arena of a cage; ``below`` [unit] is the level below sigma_max."""
-        cage, scene = physical.cage, physical.world.scene(SimConfig(time_step=TIME_STEP))
+        cage, scene = physical.cage, physical.world.scene()
         target = scene.start_positions(cage.target_placement.as_array())[0]
         if cage.escape_path is None:
             return cls(scene, held_model(scene), target, target, None, threads)
