@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import Any
 
 from experiments.escape import Assault, wilson_upper
@@ -130,8 +129,3 @@ def _second(row: Row) -> dict[str, Any] | None:
         "closings": {closed.run.which: _closed(closed) for closed in row.second.closed},
         "random_below": None if attacks is None else _run(attacks),
     }
-
-
-def effort_document(row: Row) -> dict[str, Any]:
-    """How much was done."""
-    return asdict(row.effort)
