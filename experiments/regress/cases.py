@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from experiments.escape import ATTACKERS
 from icage.errors import InputError
 from models import CASES, HARD, case_paths, object_names
 
@@ -48,7 +47,7 @@ class Effort:
 EFFORTS: Final = {
     "fast": Effort("fast", 40, 8, ("guided",), 4),
     "default": Effort("default", 100, 24, ("guided",), 6),
-    "full": Effort("full", 200, 200, ATTACKERS, 20),
+    "full": Effort("full", 200, 200, ("guided",), 20),
 }
 
 
