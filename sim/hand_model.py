@@ -135,6 +135,25 @@ def build_hand(
     return spec
 
 
+def add_instruments(spec: MjSpec, finger_radius: float) -> None:
+    """A touch sensor per finger (sum of its contacts' normal forces), fingers without weight.
+
+    They change no motion on a level table.
+    """
+    for k in range(3):
+        finger = spec.body(f"finger_{k + 1}")
+        finger.gravcomp = 1.0
+        finger.add_site(
+            name=f"finger_{k + 1}_skin", size=[1.1 * finger_radius, 0.0, 0.0], rgba=[0, 0, 0, 0]
+        )
+        spec.add_sensor(
+            name=f"finger_{k + 1}_force",
+            type=mj.mjtSensor.mjSENS_TOUCH,
+            objtype=mj.mjtObj.mjOBJ_SITE,
+            objname=f"finger_{k + 1}_skin",
+        )
+
+
 def contact_parameters(geom: MjGeom, config: SimConfig) -> None:
     """The same contact on both sides, so that no mixing rule is needed; margins stay 0, they add.
 

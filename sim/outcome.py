@@ -108,6 +108,10 @@ class ClosingOutcomes:
             contacts=contacts,
         )
 
+    def picked(self, rows: IntArray) -> ClosingOutcomes:
+        """Some of them, in any order."""
+        return ClosingOutcomes(**{one.name: getattr(self, one.name)[rows] for one in fields(self)})
+
     @classmethod
     def joined(cls, parts: list[ClosingOutcomes]) -> ClosingOutcomes:
         """Several batches, one after another."""

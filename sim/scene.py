@@ -16,7 +16,7 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from sim.config import SimConfig
 from sim.engine import MjModel, MjSpec
-from sim.hand_model import HandKinematics, build_hand
+from sim.hand_model import HandKinematics, add_instruments, build_hand
 from sim.object_model import NormalObject, add_object
 
 POSITIONS = 6
@@ -31,12 +31,15 @@ class Scene:
     ----------
     outline, hand, finger_radius:
         In the object's frame and unit.
+    instrumented:
+        With a touch sensor on each finger, and gravity that acts on the object only.
     """
 
     outline: Outline
     hand: HandShape
     finger_radius: float
     config: SimConfig
+    instrumented: bool = False
     thing: NormalObject = field(init=False, repr=False)
     kinematics: HandKinematics = field(init=False, repr=False)
     model: MjModel = field(init=False, repr=False, compare=False)
@@ -53,6 +56,9 @@ class Scene:
         spec = build_hand(self.hand, radius, self.config, looks)
         spec.modelname = "icage_scene"
         add_object(spec, self.thing, self.config)
+        if self.instrumented:
+            add_instruments(spec, radius)
+            spec.body("object").simple = 0  # its centre of mass may be moved
         return spec
 
     @property

@@ -46,6 +46,7 @@ def _observe(
     still_speed: float,
     still_steps: int,
     max_steps: int,
+    stride: int,
     seen: FloatArray,
     still: IntArray,
     steps: IntArray,
@@ -54,7 +55,7 @@ def _observe(
     fingers = np.empty((3, 2))
     depth = np.empty(3)
     for i in ids:
-        steps[i] += 1
+        steps[i] += stride
         fingers_seen(directions, qpos[i], fingers)
         sigma = 0.0
         for k in range(3):
@@ -76,7 +77,7 @@ def _observe(
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], shape)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
         seen[i, _TOUCHES] = touches
-        still[i] = still[i] + 1 if speed < still_speed and touches >= 2 else 0
+        still[i] = still[i] + stride if speed < still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
         elif sigma < pinched_sigma:
@@ -95,17 +96,20 @@ class Watch:
     ----------
     steps, ending:
         (N,) integers; ``ending`` is a code into ``ENDINGS``.
+    stride:
+        [step] Between two looks.
     """
 
     scene: Scene
     steps: IntArray
     ending: IntArray
+    stride: int
     _still: IntArray
     _seen: FloatArray
 
     @classmethod
-    def over(cls, scene: Scene, qpos: FloatArray) -> Watch:
-        """Start watching closings that start from qpos (N, 6)."""
+    def over(cls, scene: Scene, qpos: FloatArray, stride: int = 1) -> Watch:
+        """Start watching closings that start from qpos (N, 6), every ``stride`` steps."""
         count = len(qpos)
         seen = np.zeros((count, _FIELDS))
         seen[:, _SIGMA_START] = scene.sigma(qpos)
@@ -113,12 +117,13 @@ class Watch:
             scene,
             steps=np.zeros(count, dtype=np.int64),
             ending=np.full(count, RUNNING, dtype=np.int64),
+            stride=stride,
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )
 
     def observe(self, ids: IntArray, qpos: FloatArray, qvel: FloatArray) -> None:
-        """Look at the closings ``ids`` after one more step; qpos and qvel are (N, 6)."""
+        """Look at the closings ``ids`` after ``stride`` more steps; qpos and qvel are (N, 6)."""
         scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
         observe: Callable[..., None] = _observe
         observe(
@@ -134,6 +139,7 @@ class Watch:
             config.still_speed,
             config.still_steps,
             config.max_steps,
+            self.stride,
             self._seen,
             self._still,
             self.steps,
@@ -148,6 +154,11 @@ class Watch:
     def running(self) -> IntArray:
         """Ids of the closings that have not ended."""
         return np.flatnonzero(self.ending == RUNNING)
+
+    @property
+    def touches(self) -> FloatArray:
+        """(N,) fingers that touched the outline at the last look."""
+        return self._seen[:, _TOUCHES]
 
     @property
     def penetration_max(self) -> FloatArray:

@@ -1,0 +1,206 @@
+"""Closings of a study: many trials, each in its own world, some each with a shape of its own.
+
+Trials that share a scene run together on one model; the others, one model each, run together where
+their models have the same layout. Every trial is looked at every ``LOOK_EVERY`` steps. Its result
+depends on nothing but its own scene, world and start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from icage.arrays import FloatArray, IntArray
+from sim.approach import approached
+from sim.engine import Batch, MjModel, mj, no_log
+from sim.outcome import ClosingOutcomes
+from sim.scene import Scene
+from sim.varied import Setting, Worlds, expand, own_model, settings
+from sim.watch import RUNNING, SETTLED, Watch
+
+LOOK_EVERY: Final = 5
+"""[step] Between two looks at a closing: depth, force and stillness are seen this often."""
+
+CREEP_SPEED: Final = 1e-3
+"""[diameter / s, rad / s] Rough trials slower than this for ``CREEP_STEPS`` are at rest: sticking is
+regularized in the engine, so a jammed object creeps, at 1e-5 to 3e-4 (seen); sliding ones move at
+1e-2 or more."""
+
+CREEP_STEPS: Final = 100
+"""[step] In this time a creeping object moves by less than 1e-4."""
+
+TOGETHER: Final = 24
+"""[trial] From this many trials on, a scene has a batch of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class VariedOutcomes:
+    """Closings (N), and the largest normal force on any finger at any look, (N,) [closing force]."""
+
+    closings: ClosingOutcomes
+    peak_force: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Trials of one scene inside a batch: their places in the batch and among all."""
+
+    scene: Scene
+    rows: IntArray
+    watch: Watch
+
+
+def close_varied(
+    scenes: Sequence[Scene], which: IntArray, starts: FloatArray, worlds: Worlds, threads: int = 1
+) -> VariedOutcomes:
+    """Close from every start (N, 4), trial i in ``scenes[which[i]]`` and in world i.
+
+    Parameters
+    ----------
+    scenes:
+        Instrumented; with friction if any of the worlds has.
+    threads:
+        0 for one per core; the result is the same for any number.
+    """
+    count = len(starts)
+    order: list[IntArray] = []
+    parts: list[VariedOutcomes] = []
+    with no_log():
+        for lot in _lots(scenes, which):
+            parts.append(_close_lot(lot, starts, worlds, threads))
+            order += [rows for _, rows in lot]
+    if not count:
+        return _nothing()
+    closings = ClosingOutcomes.joined([part.closings for part in parts])
+    back = np.argsort(np.concatenate(order))
+    return VariedOutcomes(
+        closings.picked(back), np.concatenate([part.peak_force for part in parts])[back]
+    )
+
+
+_Lot = list[tuple[Scene, IntArray]]
+
+
+def _lots(scenes: Sequence[Scene], which: IntArray) -> Iterator[_Lot]:
+    """Trials that run in one batch: those of one scene, or all of rare scenes of one layout."""
+    rare: dict[tuple[int, ...], _Lot] = {}
+    for number, scene in enumerate(scenes):
+        rows = np.flatnonzero(which == number)
+        if len(rows) >= TOGETHER:
+            yield [(scene, rows)]
+        elif len(rows):
+            rare.setdefault(_layout(scene.model), []).append((scene, rows))
+    yield from rare.values()
+
+
+def _layout(model: MjModel) -> tuple[int, ...]:
+    """What must agree between the models of one batch: the sizes of MjData."""
+    names = ("ngeom", "nbody", "njnt", "nv", "neq", "ntendon", "nsensordata", "nbvh")
+    return tuple(int(getattr(model, name)) for name in names)
+
+
+def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> VariedOutcomes:
+    batch, parts = _opened(lot, starts, worlds, threads)
+    positions, velocities = batch.bind("qpos"), batch.bind("qvel")
+    force, warning = batch.bind("sensordata"), batch.warning
+    batch.bind("ncon")  # read at the end: a field bound after the last step would be 0
+    total = sum(len(rows) for _, rows in lot)
+    rough = np.concatenate([worlds.friction[rows] > 0.0 for _, rows in lot])
+    creeping, peak = np.zeros(total, dtype=np.int64), np.zeros(total)
+    running = np.arange(total)
+    while len(running):
+        lost: Any = ()
+        try:
+            batch.step(running.astype(np.int32), nstep=LOOK_EVERY)
+        except mj.batch.SimulationError as error:
+            lost = np.asarray(error.ids)
+        peak[running] = np.maximum(peak[running], force[running].max(axis=1))
+        slow = np.abs(velocities[running]).max(axis=1) < CREEP_SPEED
+        creeping[running] = np.where(slow & rough[running], creeping[running] + LOOK_EVERY, 0)
+        warned = warning[running, :, 1].any(axis=1)
+        bad = np.union1d(running[warned], lost).astype(np.int64)
+        first, left = 0, []
+        for part in parts:
+            last = first + len(part.rows)
+            left.append(_look(part, first, last, positions, velocities, creeping, bad))
+            first = last
+        running = np.concatenate(left)
+    return _read_off(parts, starts, batch, peak)
+
+
+def _look(
+    part: _Part, first: int, last: int, positions: FloatArray, velocities: FloatArray,
+    creeping: IntArray, bad: IntArray,
+) -> IntArray:  # fmt: skip
+    """Observe the trials of one scene, at first..last of the batch; those still running."""
+    watch = part.watch
+    running = watch.running
+    if not len(running):
+        return running
+    watch.observe(running, positions[first:last], velocities[first:last])
+    slow = creeping[first:last] >= CREEP_STEPS
+    still = slow & (watch.ending == RUNNING) & (watch.touches >= 2)
+    watch.ending[still] = SETTLED
+    if len(bad):
+        watch.diverged(bad[(bad >= first) & (bad < last)] - first)
+    return watch.running + first
+
+
+def _opened(
+    lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int
+) -> tuple[Any, list[_Part]]:
+    """The batch at its starts, the hands closing."""
+    total = sum(len(rows) for _, rows in lot)
+    batch = Batch(lot[0][0].model, nsim=total, nthread=threads)
+    models: list[MjModel] = []
+    parts: list[_Part] = []
+    begin, pull = np.zeros((total, 6)), np.zeros((total, 1))
+    first = 0
+    for scene, rows in lot:
+        here = slice(first, first + len(rows))
+        qpos = scene.start_positions(starts[rows])
+        begin[here] = approached(scene, qpos)
+        pull[here, 0] = scene.closing_force * worlds.force[rows]
+        changes: list[Setting] = list(settings(scene, worlds[rows]))
+        if len(lot) == 1 and len(rows) >= TOGETHER:
+            expand(batch, changes)
+        else:
+            models += [own_model(scene.model, changes, i) for i in range(len(rows))]
+        parts.append(_Part(scene, rows, Watch.over(scene, qpos, LOOK_EVERY)))
+        first += len(rows)
+    if models:
+        batch.set_models(models)
+    batch.qpos = begin
+    batch.ctrl = pull
+    return batch, parts
+
+
+def _read_off(
+    parts: list[_Part], starts: FloatArray, batch: Any, peak: FloatArray
+) -> VariedOutcomes:
+    found: list[ClosingOutcomes] = []
+    forces_now, positions, touching = batch.sensordata, batch.qpos, batch.ncon
+    drive: list[FloatArray] = []
+    first = 0
+    for part in parts:
+        here = slice(first, first + len(part.rows))
+        force = part.scene.config.drive_force
+        ends = part.scene.placements(np.array(positions[here]))
+        forces, contacts = np.array(forces_now[here]) / force, np.array(touching[here], np.int64)
+        found.append(ClosingOutcomes.seen(part.watch, starts[part.rows], ends, forces, contacts))
+        drive.append(np.full(len(part.rows), force))
+        first += len(part.rows)
+    return VariedOutcomes(ClosingOutcomes.joined(found), peak / np.concatenate(drive))
+
+
+def _nothing() -> VariedOutcomes:
+    none, whole = np.zeros(0), np.zeros(0, dtype=np.int64)
+    rows = np.zeros((0, 4))
+    closings = ClosingOutcomes(
+        rows, rows.copy(), whole, whole.copy(), none, none.copy(), none.copy(), none.copy(),
+        np.zeros((0, 3)), whole.copy(),
+    )  # fmt: skip
+    return VariedOutcomes(closings, none.copy())
