@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from experiments import video
 from experiments.recorded import RecordingError, read_trial, rerun
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
@@ -117,7 +118,8 @@ def test_what_is_no_replay_is_an_input_error(folder: Path, tmp_path: Path, capsy
 
 
 @pytest.mark.slow
-def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any):
+def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(video, "find_backend", lambda: None)
     film = tmp_path / "trial.mp4"
     result = here(capsys, "replay-trial", str(folder), "2", "--video", str(film))
     assert result.code == 0, result
