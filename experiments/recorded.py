@@ -103,6 +103,11 @@ class Rerun:
     differences: tuple[tuple[str, Any, Any], ...]
 
     @property
+    def other_versions(self) -> dict[str, tuple[str, str]]:
+        """Versions that differ from the recorded ones."""
+        return self.trial.other_versions
+
+    @property
     def identical(self) -> bool:
         """Whether everything recorded came out again, bit for bit."""
         return not self.differences

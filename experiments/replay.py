@@ -51,7 +51,7 @@ class Run:
     second: Cage
     """The cage by the paper's method, for comparison and for the course of its search."""
     scene: Scene
-    which: StartSet | Literal["outside"]
+    which: StartSet | Literal["outside", "study"]
     starts: Starts
     closings: ClosingOutcomes
     verdicts: Verdicts

@@ -3,7 +3,8 @@
 The *guaranteed set* is the component of the target below sigma_first, drawn below
 ``safe_level(sigma_first)``; the *rest* is what the cage holds besides (the target's component
 below sigma_max without the guaranteed set, neighbours' basins included), drawn below
-``safe_level(sigma_max)``. Every start is clear of the true outline, not of a polygonal offset.
+``safe_level(sigma_max)``; the *cage* is both together. Every start is clear of the true outline,
+not of a polygonal offset.
 
 Rejection from a box that holds the set for certain: two fingers i, j are drawn uniformly from the
 *outer* bounds of their caging regions. Then d and w = (f_j - f_i) / (z_j - z_i) are uniform in
@@ -28,7 +29,7 @@ from icage.kernels.locate import depth_inside
 from icage.membership import TARGET, query
 from icage.regions import outer_bounds
 
-StartSet = Literal["guaranteed", "rest"]
+StartSet = Literal["guaranteed", "rest", "cage"]
 
 TRIES_PER_START = 100_000
 """Hands tried per start asked for before giving up: the rates seen are 1e-3 to 0.2."""
@@ -105,6 +106,8 @@ def draw_starts(
         The set is empty, or ``TRIES_PER_START`` hands a start were not enough; says how many were
         found in how many tries.
     """
+    if which == "cage" and not has_rest(cage):
+        which = "guaranteed"
     if cage.verdict == "not_a_cage" or (which == "rest" and not has_rest(cage)):
         raise SamplingError(f"this cage has no {which} set of placements")
     box = _Box.around(cage, which)
@@ -230,7 +233,10 @@ def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:
         return inside
     answers = query(cage, placements)
     target = answers.verdict == TARGET
-    inside[:] = target if which == "guaranteed" else answers.in_cage & ~target
+    if which == "guaranteed":
+        inside[:] = target
+    else:
+        inside[:] = answers.in_cage if which == "cage" else answers.in_cage & ~target
     at = np.flatnonzero(inside)
     fingers = cage.hand.fingers(placements[at]).reshape(-1, 2)
     depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.engine import MjModel, mj
 from sim.scene import Scene
@@ -115,7 +115,9 @@ def settings(scene: Scene, worlds: Worlds) -> Iterator[Setting]:
         spin = worlds.mass * worlds.inertia * scene.thing.gyration_squared
         yield Setting("body_mass", (body,), worlds.mass, const=True)
         yield Setting("body_inertia", (body,), np.repeat(spin[:, None], 3, axis=1), const=True)
-        yield Setting("body_ipos", (body, slice(0, 2)), np.column_stack([worlds.com_x, worlds.com_y]))
+        yield Setting(
+            "body_ipos", (body, slice(0, 2)), np.column_stack([worlds.com_x, worlds.com_y])
+        )
     if differs("speed", "force"):
         slow = (config.finger_damping * worlds.force / worlds.speed)[:, None]
         yield Setting("dof_damping", (slice(0, 3),), slow)
@@ -164,7 +166,10 @@ def mean_distance(vertices: FloatArray) -> float:
         height = cross / length  # signed; the triangle's orientation
         if abs(height) < 1e-12:
             continue
-        ends = [(x * (bx - ax) + y * (by - ay)) / (length * abs(height)) for x, y in ((ax, ay), (bx, by))]
+        ends = [
+            (x * (bx - ax) + y * (by - ay)) / (length * abs(height))
+            for x, y in ((ax, ay), (bx, by))
+        ]
         first, last = (t * math.hypot(1.0, t) + math.asinh(t) for t in ends)
         total += height**3 * (last - first) / 6.0
     return total / area

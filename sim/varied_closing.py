@@ -25,9 +25,9 @@ LOOK_EVERY: Final = 5
 """[step] Between two looks at a closing: depth, force and stillness are seen this often."""
 
 CREEP_SPEED: Final = 1e-3
-"""[diameter / s, rad / s] Rough trials slower than this for ``CREEP_STEPS`` are at rest: sticking is
-regularized in the engine, so a jammed object creeps, at 1e-5 to 3e-4 (seen); sliding ones move at
-1e-2 or more."""
+"""[diameter / s, rad / s] Rough trials slower than this for ``CREEP_STEPS`` are at rest. Sticking
+is regularized in the engine, so a jammed object creeps, at 1e-5 to 3e-4 (seen); sliding ones move
+at 1e-2 or more."""
 
 CREEP_STEPS: Final = 100
 """[step] In this time a creeping object moves by less than 1e-4."""
@@ -38,7 +38,7 @@ TOGETHER: Final = 24
 
 @dataclass(frozen=True, slots=True)
 class VariedOutcomes:
-    """Closings (N), and the largest normal force on any finger at any look, (N,) [closing force]."""
+    """Closings, and the largest normal force on any finger at any look, (N,) [closing force]."""
 
     closings: ClosingOutcomes
     peak_force: FloatArray
@@ -149,9 +149,7 @@ def _look(
     return watch.running + first
 
 
-def _opened(
-    lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int
-) -> tuple[Any, list[_Part]]:
+def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tuple[Any, list[_Part]]:
     """The batch at its starts, the hands closing."""
     total = sum(len(rows) for _, rows in lot)
     batch = Batch(lot[0][0].model, nsim=total, nthread=threads)

@@ -25,7 +25,7 @@ def add_parser(subparsers: Any) -> None:
         "folder",
         metavar="DIR",
         type=file_name,
-        help="folder of `icage replay` or of `icage regress --out`",
+        help="folder of `icage replay`, `icage regress --out` or `icage study`",
     )
     parser.add_argument(
         "index", metavar="INDEX", type=row_index,
@@ -37,21 +37,27 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Close again, compare, film; 1 if it differs on the same versions."""
-    import sys
     from pathlib import Path
 
-    from experiments.json_out import write_json
     from experiments.options import same
     from icage.errors import InputError
 
     folder = Path(args.folder)
-    inputs = (folder / "replay.json", folder / "trials.parquet")
+    inputs = tuple(folder / name for name in ("replay.json", "study.json", "trials.parquet"))
     check_output("--json", args.json, *inputs)
     check_output("--video", args.video, *inputs)
     if args.video is not None and Path(args.video).suffix.lower() != ".mp4":
         raise InputError(f"--video {args.video!r}: a name ending in .mp4 is needed")
     if args.video is not None and args.json not in (None, "-") and same(args.json, args.video):
         raise InputError(f"--json and --video both name {args.json!r}")
+
+    if (folder / "study.json").is_file():
+        from experiments.study import replayed, replayed_words
+
+        again = replayed.rerun_trial(folder, args.index)
+        if args.video is not None:
+            replayed.film_rerun(again, Path(args.video))
+        return _told(args, again, replayed_words.document(again), replayed_words.summary(again))
 
     from experiments.recorded import read_trial, rerun  # only now: they take a second to load
 
@@ -60,11 +66,20 @@ def run(args: argparse.Namespace) -> int:
         from experiments.trial_film import film_trial
 
         film_trial(done, Path(args.video))
+    return _told(args, done, document(done), summary(done))
+
+
+def _told(args: argparse.Namespace, done: Any, whole: dict[str, Any], lines: Iterator[str]) -> int:
+    """Write the document, print the lines; 1 if anything differs on the same versions."""
+    import sys
+
+    from experiments.json_out import write_json
+
     if args.json is not None:
-        write_json(document(done), args.json)
+        write_json(whole, args.json)
     if args.json != "-":
-        print("\n".join(summary(done)))
-    failed = bool(done.differences) and not done.trial.other_versions
+        print("\n".join(lines))
+    failed = bool(done.differences) and not done.other_versions
     if failed:
         names = ", ".join(name for name, _, _ in done.differences)
         print(f"icage: replay-trial failed: same versions, but {names} differ", file=sys.stderr)

@@ -59,7 +59,9 @@ class Distribution:
         if not all(math.isfinite(value) for value in p):
             raise DistributionError("finite numbers are needed")
         if self.kind == "uniform" and not p[0] < p[1]:
-            raise DistributionError(f"the range {p[0]:g} to {p[1]:g} is empty; LOW < HIGH is needed")
+            raise DistributionError(
+                f"the range {p[0]:g} to {p[1]:g} is empty; LOW < HIGH is needed"
+            )
         if self.kind in ("normal", "truncated") and not p[1] > 0.0:
             raise DistributionError(
                 f"a standard deviation of {p[1]:g}; a number above 0 is needed (or a fixed value)"

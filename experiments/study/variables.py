@@ -78,7 +78,7 @@ VARIABLES: Final = {
         Variable("outline_scale", "shape", "ratio", 1.0, 0.5, 2.0,
                  "true size of the object over the planned one, about its centroid", True),
         Variable("outline_noise", "shape", "length", 0.0, 0.0, math.inf,
-                 "root mean square of a smooth displacement of the boundary along its normal", True),
+                 "root mean square of a smooth displacement of the boundary", True),
         Variable("finger_radius", "hand", "length", 0.0, *_ANY,
                  "error of the finger radius", True),
         Variable("phi_1", "hand", "angle", 0.0, -0.5, 0.5,
@@ -100,9 +100,7 @@ class VariableError(InputError):
     """An unknown variable, or values that it cannot have."""
 
 
-def read_variable(
-    name: str, given: object, unit: str, diameter: float
-) -> dict[str, Distribution]:
+def read_variable(name: str, given: object, unit: str, diameter: float) -> dict[str, Distribution]:
     """Name to distribution of one line of a study; two for a pair.
 
     Raises
@@ -167,3 +165,18 @@ def _converted(one: Variable, number: float, suffix: str, unit: str, diameter: f
             return number * (0.01 if suffix else 1.0)
         allowed = "none or %"
     raise DistributionError(f"unit {suffix!r} after {number:g}; {allowed} is allowed")
+
+
+def listing() -> list[str]:
+    """All variables, a line each, for ``icage study --variables``."""
+    lines: list[str] = []
+    for group in GROUPS:
+        lines.append(f"{group}:")
+        for one in (v for v in VARIABLES.values() if v.group == group):
+            unit = own_unit(one, "length")
+            lines.append(f"  {one.name:<16} [{unit}] {one.help} (nominal {one.nominal:.4g})")
+    lines.append(f"pairs: {', '.join(f'{k} = {a}, {b}' for k, (a, b) in PAIRS.items())}")
+    lines.append("a distribution is VALUE, LOW:HIGH, normal:SD, normal:MEAN:SD,")
+    lines.append("truncated:MEAN:SD:LOW:HIGH, grid:A,B,C or grid:LOW:HIGH:COUNT; numbers may carry")
+    lines.append("mm, cm, m (or % of the diameter), deg, rad, % (of 1)")
+    return lines

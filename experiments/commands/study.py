@@ -1,0 +1,114 @@
+"""``icage study CASE --vary NAME=DISTRIBUTION ... --out DIR``: how wrong may everything be?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from experiments.options import count, file_name, not_negative, positive, seed
+from experiments.study.fields import HELP
+
+if TYPE_CHECKING:
+    from experiments.study.session import Session
+
+_WORDS = ("starts", "sampling", "uncaged")
+_POSITIVE = ("until_half_width", "position_tolerance", "angle_tolerance", "max_time", "time_step")
+
+
+def add_parser(subparsers: Any) -> None:
+    """Options of the command."""
+    parser = subparsers.add_parser(
+        "study",
+        help="Monte Carlo: how wrong may placement, friction, shape and hand be?",
+        description="Close the hand many times with uncertain inputs and report how often it ends "
+        "in the target grasp: a rate with an interval, a map, and the number of every trial that "
+        "failed. Results appear shard by shard; --resume goes on after anything.",
+        epilog="Exit code 0 if the study was run, whatever its rate. A study may also be a TOML "
+        "file with the same fields: icage study study.toml --out DIR.",
+    )
+    parser.add_argument("case", metavar="CASE", type=file_name, nargs="?", help=HELP["case"])
+    parser.add_argument("--out", metavar="DIR", type=file_name, help="folder for all results")
+    parser.add_argument(
+        "--vary", metavar="NAME=DIST", action="append", default=[], help=HELP["vary"]
+    )
+    for name in ("grasp", "trials"):
+        parser.add_argument(_option(name), metavar="N", type=count, help=HELP[name])
+    parser.add_argument("--seed", metavar="S", type=seed, help=HELP["seed"])
+    for name in _WORDS:
+        parser.add_argument(_option(name), metavar="WORD", help=HELP[name])
+    parser.add_argument("--nominal", metavar="X,Y,THETA,SIGMA", type=_four, help=HELP["nominal"])
+    for name in _POSITIVE:
+        parser.add_argument(_option(name), metavar="X", type=positive, help=HELP[name])
+    parser.add_argument(
+        "--resume", action="store_true", help="go on with the study in DIR; CASE may be left out"
+    )
+    parser.add_argument(
+        "--threads", metavar="T", type=count, default=None, help="default: one per core"
+    )
+    parser.add_argument(
+        "--shard", metavar="N", type=count, default=500, help="trials in a shard (default 500)"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", type=file_name,
+        help="run the shards on the dask.distributed cluster at tcp://HOST:PORT",
+    )  # fmt: skip
+    parser.add_argument(
+        "--figures", action=argparse.BooleanOptionalAction, default=True, help="draw figures"
+    )
+    parser.add_argument(
+        "--variables", action="store_true", help="list the inputs that can vary, and stop"
+    )
+
+
+def _option(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def _four(text: str) -> tuple[float, ...]:
+    numbers = text.split(",")
+    if len(numbers) != 4:
+        raise argparse.ArgumentTypeError(f"{text!r}: X,Y,THETA,SIGMA is needed")
+    values = [
+        float(not_negative(n.lstrip("-"))) * (-1 if n.startswith("-") else 1) for n in numbers
+    ]
+    return tuple(values)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Check everything, run what is missing, sum up."""
+    if args.variables:
+        from experiments.study.variables import listing
+
+        print("\n".join(listing()))
+        return 0
+
+    from experiments.study.session import run_session, session_of
+
+    session: Session = session_of(_given(args), args.out, args.resume, args.shard)
+    lines = run_session(session, args.threads, args.scheduler, args.figures)
+    print("\n".join(lines))
+    return 0
+
+
+def _given(args: argparse.Namespace) -> dict[str, Any]:
+    """The fields that the command line names."""
+    from experiments.study.config import ConfigError
+
+    given: dict[str, Any] = {}
+    names = ("case", "grasp", "trials", "seed", "nominal", *_WORDS, *_POSITIVE)
+    for name in names:
+        value = getattr(args, name)
+        if value is not None:
+            given[name] = value
+    vary: dict[str, str] = {}
+    for text in args.vary:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        if not (equals and name and value.strip()):
+            raise ConfigError(f"--vary {text!r}; NAME=DISTRIBUTION is needed")
+        if name in vary:
+            raise ConfigError(f"--vary {name} is given twice")
+        vary[name] = value
+    if vary:
+        given["vary"] = vary
+    return given

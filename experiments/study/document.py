@@ -1,0 +1,110 @@
+"""``study.json``: a study as it can be run again, by another process or another machine."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any, Final
+
+from experiments.study.config import StudyConfig
+from experiments.study.distributions import Distribution
+from experiments.study.shard import Study
+from experiments.versions import versions
+from icage.errors import InputError
+from icage.formats.case_json import Case
+from icage.outline import Outline
+from icage.planner import plan
+
+FORMAT: Final = "icage-study/1"
+
+_MAY_GROW: Final = ("trials", "until_half_width")
+"""A study may be resumed with other values of these: its trials are the same ones."""
+
+
+def study_document(study: Study) -> dict[str, Any]:
+    """Everything that decides the numbers of a study, JSON-ready."""
+    case = study.case
+    return {
+        "format": FORMAT,
+        "name": case.name,
+        "unit": case.unit,
+        "case": {
+            "outline": {"vertices": case.outline.vertices.tolist()},
+            "finger_radius": case.finger_radius,
+            "contacts": case.contacts.tolist(),
+        },
+        "diameter": case.outline.diameter,
+        "config": study.config.document(),
+        "nominal": None
+        if study.intended.nominal is None
+        else dict(zip(("x", "y", "theta", "sigma"), study.intended.nominal.tolist(), strict=True)),
+        "versions": versions(),
+    }
+
+
+def study_of(document: Mapping[str, Any]) -> Study:
+    """The study of a document, planned afresh.
+
+    Raises
+    ------
+    InputError:
+        It is no study's document.
+    """
+    if document.get("format") != FORMAT:
+        raise InputError(f"format {document.get('format')!r}; {FORMAT!r} is needed")
+    try:
+        given = document["case"]
+        case = Case(
+            document["name"], document["unit"], Outline(given["outline"]["vertices"]),
+            given["finger_radius"], _array(given["contacts"]), (),
+        )  # fmt: skip
+        plain = dict(document["config"])
+        nominal = plain.pop("nominal")
+        vary = {
+            name: Distribution(one["kind"], tuple(one["parameters"]))
+            for name, one in plain.pop("vary").items()
+        }
+        config = StudyConfig(
+            vary=vary, nominal=None if nominal is None else tuple(nominal), **plain
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"not a study's document: {error!r}") from error
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    return Study(config, case, cage)
+
+
+def _array(rows: Any) -> Any:
+    import numpy as np
+
+    return np.array(rows, dtype=np.float64)
+
+
+def fingerprint(document: Mapping[str, Any]) -> str:
+    """What two shards of one study have in common: config, case and versions, not its length."""
+    config = {k: v for k, v in document["config"].items() if k not in _fixed(document)}
+    kept = {key: document[key] for key in ("name", "unit", "case", "versions")}
+    text = json.dumps({**kept, "config": config}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _fixed(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Fields that may grow; Saltelli's design hangs on the number of trials."""
+    return () if document["config"]["sampling"] == "saltelli" else (*_MAY_GROW, "case", "grasp")
+
+
+def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+    """Why a study cannot go on with another's shards, in words."""
+    lines = []
+    loose = _fixed(new)
+    for key in sorted({*old["config"], *new["config"]}):
+        was, now = old["config"].get(key), new["config"].get(key)
+        if was != now and key not in loose:
+            lines.append(f"{key} was {was!r}, is {now!r}")
+    if old["case"] != new["case"] or old["unit"] != new["unit"]:
+        lines.append("the case is another one")
+    for name in sorted({*old["versions"], *new["versions"]}):
+        was, now = old["versions"].get(name), new["versions"].get(name)
+        if was != now:
+            lines.append(f"{name} was {was}, is {now}")
+    return lines

@@ -1,0 +1,182 @@
+"""The folder of a study: its document, shards written whole or not at all, the table in the end.
+
+While it runs, ``shards/trials-FIRST-LAST.parquet`` hold trials FIRST..LAST. When it is done they
+become one ``trials.parquet``. Each shard names the study it belongs to, so that none of another is
+ever counted.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from experiments.json_out import write_json
+from experiments.whole_files import whole_file
+from icage.errors import InputError
+
+JSON, TRIALS, PAGE = "study.json", "trials.parquet", "results.md"
+SHARDS: Final = "shards"
+
+_NAME: Final = re.compile(r"trials-(\d{9})-(\d{9})\.parquet")
+_KEY: Final = b"icage-study"
+
+_LARGEST: Final = 1_000_000_000
+"""[byte] Largest document read."""
+
+
+@dataclass(frozen=True, slots=True)
+class StudyFolder:
+    """A place on disk and the fingerprint of the study that lives there."""
+
+    path: Path
+    fingerprint: str
+
+    def shards(self) -> dict[tuple[int, int], Path]:
+        """(first, last) trial to file of every whole shard of this study; others are removed.
+
+        A shard that cannot be read, is of another study or overlaps an earlier one is run again.
+        """
+        found: dict[tuple[int, int], Path] = {}
+        past = -1
+        for path in sorted((self.path / SHARDS).glob("trials-*.parquet")):
+            name = _NAME.fullmatch(path.name)
+            span = (int(name[1]), int(name[2])) if name else (0, -1)
+            if span[0] > past and self._whole(path, span):
+                found[span], past = path, span[1]
+            else:
+                path.unlink()
+        for part in (self.path / SHARDS).glob(".trials-*"):  # of a process that was killed
+            part.unlink()
+        return found
+
+    def _whole(self, path: Path, span: tuple[int, int]) -> bool:
+        try:
+            about = pq.read_metadata(path)
+        except (OSError, pa.ArrowException):
+            return False
+        words = about.metadata or {}
+        return (
+            words.get(_KEY) == self.fingerprint.encode() and about.num_rows == span[1] - span[0] + 1
+        )
+
+    def keep(self, table: pa.Table, first: int) -> None:
+        """Write a shard, whole and on the disk before it gets its name.
+
+        Raises
+        ------
+        OutputError:
+            The disk is full, or the folder may not be written to; nothing of it is left.
+        """
+        last = first + table.num_rows - 1
+        path = self.path / SHARDS / f"trials-{first:09d}-{last:09d}.parquet"
+        path.parent.mkdir(exist_ok=True)
+        self._write(table, path)
+
+    def finish(self, table: pa.Table) -> None:
+        """Write the whole table, then forget the shards."""
+        self._write(table, self.path / TRIALS)
+        self.clear()
+
+    def reopen(self, table: pa.Table) -> None:
+        """Make one shard of the whole table, for a study that goes on."""
+        self.keep(table, 0)
+        (self.path / TRIALS).unlink()
+
+    def clear(self) -> None:
+        """Remove the shards: they are in the table."""
+        for path in (self.path / SHARDS).glob("*trials-*"):
+            path.unlink()
+        with suppress(OSError):
+            (self.path / SHARDS).rmdir()
+
+    def finished(self) -> pa.Table | None:
+        """The whole table if it is there and of this study."""
+        path = self.path / TRIALS
+        try:
+            table = pq.read_table(path)
+        except (OSError, pa.ArrowException):
+            return None
+        words = table.schema.metadata or {}
+        return table if words.get(_KEY) == self.fingerprint.encode() else None
+
+    def _write(self, table: pa.Table, path: Path) -> None:
+        words = {_KEY: self.fingerprint.encode()}
+        with whole_file(path) as part, part.open("wb") as stream:
+            pq.write_table(table.replace_schema_metadata(words), stream, compression="zstd")
+            stream.flush()
+            os.fsync(stream.fileno())
+        _sync_folder(path.parent)
+
+
+def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, pa.Table]]:
+    """(first trial, table) of shards, in order."""
+    for (first, _), path in sorted(shards.items()):
+        yield first, pq.read_table(path)
+
+
+def missing(spans: list[tuple[int, int]], total: int, size: int) -> list[tuple[int, int]]:
+    """(first, last) of what spans leave of trials 0..total-1, cut into pieces of ``size``.
+
+    >>> missing([(0, 3), (6, 7)], 12, 3)
+    [(4, 5), (8, 9), (10, 11)]
+    """
+    gaps: list[tuple[int, int]] = []
+    at = 0
+    for first, last in [*sorted(spans), (total, total)]:
+        gaps += _cut(at, min(first, total), size)
+        at = max(at, last + 1)
+    return gaps
+
+
+def _cut(first: int, end: int, size: int) -> list[tuple[int, int]]:
+    """Even pieces of first..end-1, none longer than ``size``."""
+    count = -(-(end - first) // size) if end > first else 0
+    edges = [first + (end - first) * k // count for k in range(count + 1)] if count else []
+    return [(a, b - 1) for a, b in pairwise(edges)]
+
+
+def read_document(folder: Path) -> dict[str, Any] | None:
+    """``study.json`` of a folder, None if there is none.
+
+    Raises
+    ------
+    InputError:
+        It is no study's document.
+    """
+    path = folder / JSON
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise InputError(f"{str(path)!r} is larger than {_LARGEST} bytes")
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(f"{str(path)!r} cannot be read: {error}") from error
+    if not isinstance(document, dict):
+        raise InputError(f"{str(path)!r} is not a study's document")
+    return document
+
+
+def write_document(document: dict[str, Any], folder: Path) -> None:
+    """Write ``study.json``, whole or not at all."""
+    write_json(document, str(folder / JSON))
+
+
+def _sync_folder(folder: Path) -> None:
+    """Have the disk know the new name: after a power cut it is there or it is not."""
+    with suppress(OSError):  # some systems open no folders
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

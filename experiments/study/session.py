@@ -1,0 +1,199 @@
+"""One call of ``icage study``: from what was given to results in a folder."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from experiments.disc_case import physical_case
+from experiments.inputs import case_file
+from experiments.options import check_folder
+from experiments.progress import stage_bar
+from experiments.study.config import ConfigError, StudyConfig, read_toml, study_config
+from experiments.study.document import differences, fingerprint, study_document, study_of
+from experiments.study.folder import (
+    JSON,
+    PAGE,
+    TRIALS,
+    StudyFolder,
+    read_document,
+    write_document,
+)
+from experiments.study.run import Backend, on_threads, run_study
+from experiments.study.shard import Study
+from experiments.study.summary import sentence, summary
+from experiments.whole_files import whole_file
+from icage.formats.case_json import Case, read_case
+from models import case_paths, object_names
+
+MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A checked study and where it goes."""
+
+    study: Study
+    document: dict[str, Any]
+    folder: StudyFolder
+    shard: int
+
+
+def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: int) -> Session:
+    """Check everything before anything runs.
+
+    Raises
+    ------
+    InputError:
+        A field, the folder, or what is in it already does not fit.
+    """
+    if out is None:
+        raise ConfigError("--out DIR is needed")
+    path = Path(out)
+    table = dict(given)
+    if "case" in table and table["case"].lower().endswith(".toml"):
+        table = _with_file(Path(table.pop("case")), table)
+    check_folder("--out", path, (JSON, TRIALS, PAGE))
+    old = read_document(path)
+    if old is not None and not resume:
+        raise ConfigError(
+            f"--out {out!r} holds a study already; --resume goes on with it, or name another folder"
+        )
+    if old is None and resume and not table.get("case"):
+        raise ConfigError(f"--out {out!r} holds no study to go on with")
+    if old is not None and not table.get("case"):
+        if table:
+            raise ConfigError(f"{next(iter(table))} is given without a CASE")
+        study = study_of(old)
+    else:
+        if not table.get("case"):
+            raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
+        case = _case(table)
+        config = study_config(table, case)
+        physical = physical_case(case)
+        study = Study(config, physical.case, physical.cage)
+    document = study_document(study)
+    if old is not None:
+        lines = differences(old, document)
+        if lines:
+            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}")
+    return Session(study, document, StudyFolder(path, fingerprint(document)), shard)
+
+
+def _with_file(path: Path, over: Mapping[str, Any]) -> dict[str, Any]:
+    """The table of a TOML file; what the command line gives replaces it, input by input."""
+    table = read_toml(path)
+    vary = {**table.get("vary", {}), **over.get("vary", {})}
+    merged = {**table, **over, "vary": vary}
+    case = merged.get("case")
+    if isinstance(case, str) and case not in object_names() and not Path(case).is_absolute():
+        merged["case"] = str(path.parent / case)
+    return merged
+
+
+def _case(table: Mapping[str, Any]) -> Case:
+    name, grasp = table["case"], table.get("grasp", 1)
+    if not isinstance(name, str):
+        raise ConfigError(f"case is {name!r}; a word is needed")
+    if name in object_names() and not Path(name).is_file():
+        paths = case_paths(name)
+        if isinstance(grasp, int) and not 1 <= grasp <= len(paths):
+            raise ConfigError(f"grasp is {grasp}; {name} has grasps 1 to {len(paths)}")
+        return read_case(paths[grasp - 1] if isinstance(grasp, int) else paths[0])
+    if grasp != 1:
+        raise ConfigError(f"grasp is {grasp!r}; a case file has one grasp")
+    return read_case(case_file(name))
+
+
+def run_session(
+    session: Session, threads: int | None, scheduler: str | None, figures: bool
+) -> list[str]:
+    """Run what is missing and write all results; the lines to print."""
+    study, folder = session.study, session.folder
+    total = study.design.total
+    print(_announcement(study), flush=True)
+    folder.path.mkdir(parents=True, exist_ok=True)
+    write_document({**session.document, "finished": False}, folder.path)
+    with stage_bar() as bar:
+        table, length = run_study(
+            study, folder, _backend(session, threads, scheduler), session.shard,
+            lambda done, whole: bar("trials", done, whole),
+        )  # fmt: skip
+    found = summary(study.config, study.design, table)
+    stopped = {"early": length.early, "at": length.at, "why": length.why}
+    document = {**session.document, "finished": True, "stopped": stopped, "found": found}
+    write_document(document, folder.path)
+    _write_page(document, folder.path)
+    if figures:
+        _draw(study, document, table, folder.path)
+    name = study.case.name
+    lines = [sentence(found, name)]
+    counts = ", ".join(f"{k} {n.replace('_', ' ')}" for n, k in found["outcomes"].items() if k)
+    lines.append(f"{length.at} of {total} trials ({length.why}): {counts}")
+    lines.append(f"files in {folder.path}")
+    return lines
+
+
+def _announcement(study: Study) -> str:
+    design = study.design
+    what = ", ".join(design.names) or "nothing but the start"
+    line = f"{study.case.name}: {design.total} trials, varying {what}, seed {study.config.seed}"
+    if design.groups:
+        base = design.total // (len(design.groups) + 2)
+        line += (
+            f"; Saltelli's design, {base} base points x ({len(design.groups)} groups + 2) = "
+            f"{design.total} runs"
+        )
+    return line
+
+
+def _backend(session: Session, threads: int | None, scheduler: str | None) -> Backend:
+    if scheduler is None:
+        return on_threads(threads or len(os.sched_getaffinity(0)))
+    from experiments.study.cluster import on_cluster
+
+    return on_cluster(scheduler, session.document)
+
+
+def _write_page(document: dict[str, Any], folder: Path) -> None:
+    from experiments.study.results_md import results_page
+
+    with whole_file(folder / PAGE) as part:
+        part.write_text(results_page(document, command_line(document)), encoding="utf-8")
+
+
+def command_line(document: Mapping[str, Any]) -> str:
+    """The command that runs a study again, whatever it was given by."""
+    config, default = document["config"], StudyConfig(case="").document()
+    words = ["icage", "study", config["case"]]
+    for name, value in config.items():
+        if name in ("case", "vary") or value is None or value == default[name]:
+            continue
+        text = ",".join(map(repr, value)) if isinstance(value, (list, tuple)) else str(value)
+        words += [f"--{name.replace('_', '-')}", text]
+    for name, one in config["vary"].items():
+        words += ["--vary", f"{name}={_written(one)}"]
+    return " ".join(shlex.quote(word) for word in [*words, "--out", "DIR"])
+
+
+def _written(one: Mapping[str, Any]) -> str:
+    numbers = [repr(value) for value in one["parameters"]]
+    if one["kind"] == "grid":
+        return "grid:" + ",".join(numbers)
+    return ":".join([one["kind"], *numbers])
+
+
+def _draw(study: Study, document: dict[str, Any], table: Any, folder: Path) -> None:
+    from experiments.figures import figure_regions
+    from experiments.study.figures import draw_indices, draw_map, draw_rates
+
+    regions = figure_regions(study.cage)
+    draw_map(document, table, study.cage, regions, folder / MAP)
+    if document["found"]["variables"]:
+        draw_rates(document, folder / RATES)
+    if document["found"].get("indices", {}).get("groups"):
+        draw_indices(document, folder / INDICES)

@@ -1,0 +1,251 @@
+"""A piece of a study: any trials, from their numbers to rows of a table.
+
+A row depends on the study's config, its case and the trial's number, and on nothing else: not on
+the shard, the thread, the machine or on who ran before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from experiments.study.config import StudyConfig
+from experiments.study.design import Design
+from experiments.study.placements import Intended, collides, moved
+from experiments.study.variants import Key, Variant, Variants
+from icage.arrays import FloatArray, IntArray
+from icage.cage import Cage
+from icage.formats.case_json import Case
+from icage.membership import COLLIDES, VERDICTS, Answers, query
+from icage.tolerance import COLLISION
+from sim.judge import JAMMED, OUTCOMES, TARGET, UNMATCHED, Tolerances, grasp_errors, judge
+from sim.outcome import ClosingOutcomes
+from sim.varied import Worlds
+from sim.varied_closing import VariedOutcomes, close_varied
+
+STUDY_OUTCOMES: Final = (*OUTCOMES, "collision", "not_caged", "no_shape")
+"""collision: a finger would start inside the object. not_caged: skipped, as asked. no_shape: the
+outline or hand that was drawn crosses itself."""
+
+COLLISION_AT_START, NOT_CAGED, NO_SHAPE = (len(OUTCOMES) + k for k in range(3))
+
+_NEAREST: Final = 3
+"""Other grasps of the plan that an end on a variant is compared with."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """A config with its case, planned: what every shard needs."""
+
+    config: StudyConfig
+    case: Case
+    cage: Cage
+    design: Design = field(init=False)
+    intended: Intended = field(init=False, repr=False)
+    variants: Variants = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "design", Design.of(self.config))
+        object.__setattr__(self, "intended", Intended(self.config, self.cage))
+        object.__setattr__(self, "variants", Variants(self.config, self.cage))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ran:
+    """Trials (n): everything that a row of the table is made of.
+
+    Attributes
+    ----------
+    done:
+        (m,) rows that were closed; ``closings`` has those only.
+    """
+
+    trials: IntArray
+    values: dict[str, FloatArray]
+    meant: FloatArray
+    starts: FloatArray
+    answers: Answers
+    outcome: IntArray
+    grasp_id: IntArray
+    errors: FloatArray
+    done: IntArray
+    closings: VariedOutcomes
+    variants: list[Variant]
+    which: IntArray
+
+
+def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
+    """Draw, close and judge trials (n,), given in ascending order."""
+    config, cage, design = study.config, study.cage, study.design
+    values = design.values(trials)
+    meant = study.intended.placements(*design.streams(trials))
+    planned_middle = np.full(len(trials), complex(cage.hand.z.mean()))
+    seen = moved(meant, values, cage, planned_middle)
+    answers = query(cage, _askable(seen))
+    outcome = np.full(len(trials), -1, dtype=np.int64)
+    if config.uncaged == "skip":
+        outcome[~answers.in_cage & (answers.verdict != COLLIDES)] = NOT_CAGED
+    variants, which = _variants(study, values, trials)
+    middles = np.array([0j if v is None else complex(v.hand.z.mean()) for v in variants])
+    starts = moved(meant, values, cage, middles[which])
+    for i in np.flatnonzero(outcome < 0).tolist():
+        variant = variants[which[i]]
+        if variant is None:
+            outcome[i] = NO_SHAPE
+        elif _collides(variant, starts[i]):
+            outcome[i] = COLLISION_AT_START
+    done = np.flatnonzero(outcome < 0)
+    scenes = [(v or study.variants.planned).scene for v in variants]
+    closings = close_varied(
+        scenes, which[done], starts[done], worlds_of(study, values, starts)[done]
+    )
+    errors = np.full((len(trials), 2), np.nan)
+    grasp_id = np.full(len(trials), -1, dtype=np.int64)
+    known = [v or study.variants.planned for v in variants]
+    for number in np.unique(which[done]).tolist():
+        here = np.flatnonzero(which[done] == number)
+        rows = done[here]
+        found = _judged(study, known[number], closings.closings.picked(here))
+        outcome[rows], grasp_id[rows], errors[rows] = found
+    held_up = (values["friction"] > 0.0) | (values["table_friction"] > 0.0)
+    outcome[(outcome == UNMATCHED) & held_up] = JAMMED
+    return Ran(
+        trials, values, meant, starts, answers, outcome, grasp_id, errors, done, closings, known,
+        which,
+    )  # fmt: skip
+
+
+def _askable(placements: FloatArray) -> FloatArray:
+    """Placements that can be asked about: a hand cannot be smaller than shut."""
+    rows = np.array(placements)
+    rows[:, 3] = np.maximum(rows[:, 3], 0.0)
+    return rows
+
+
+def _variants(
+    study: Study, values: dict[str, FloatArray], trials: IntArray
+) -> tuple[list[Variant | None], IntArray]:
+    """The variants of trials (n,), each once, and which one each trial has."""
+    number: dict[Key, int] = {}
+    made: list[Variant | None] = []
+    which = np.empty(len(trials), dtype=np.int64)
+    for row, trial in enumerate(trials.tolist()):
+        key = study.variants.key(values, row, trial)
+        if key not in number:
+            number[key] = len(made)
+            made.append(study.variants.make(key))
+        which[row] = number[key]
+    return made, which
+
+
+def _collides(variant: Variant, start: FloatArray) -> bool:
+    if not start[3] > 0.0:
+        return True
+    fingers = variant.hand.fingers(start)
+    return collides(variant.outline, fingers, variant.finger_radius, COLLISION)
+
+
+def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -> Worlds:
+    """Worlds (n). The table's slope is told in the object's axes at the start, the engine's gravity
+    in the palm's: turned back by theta. Weight goes with the mass.
+    """
+    size = study.cage.outline.diameter
+    pull = values["weight"] * np.sin(values["tilt"])
+    direction = values["tilt_direction"] - starts[:, 2]
+    return Worlds(
+        friction=values["friction"],
+        softness=values["softness"],
+        table_friction=values["table_friction"],
+        gravity_x=pull * np.cos(direction),
+        gravity_y=pull * np.sin(direction),
+        mass=values["mass"],
+        inertia=values["inertia"],
+        com_x=values["com_x"] / size,
+        com_y=values["com_y"] / size,
+        speed=values["speed"],
+        force=values["force"],
+    )
+
+
+def _judged(
+    study: Study, variant: Variant, closings: ClosingOutcomes
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Outcome (k,), grasp (k,) and errors (k, 2) of closings of one variant."""
+    config, grasps = study.config, study.cage.grasps
+    near = config.position_tolerance, config.angle_tolerance
+    tolerances = Tolerances(*near, *near)
+    wanted = grasps
+    if not variant.planned:
+        target = study.variants.grasps(variant, grasps[:1])
+        first = judge(closings, target, variant.outline, tolerances=tolerances)
+        if not (first.outcome == UNMATCHED).any():
+            return first.outcome, first.grasp_id, _errors(first)
+        ends = closings.end[first.outcome == UNMATCHED]
+        far = [grasp_errors(ends, g, study.cage.outline)[0].min() for g in grasps[1:]]
+        wanted = (grasps[0], *(grasps[1 + k] for k in np.argsort(far)[:_NEAREST]))
+    places = study.variants.grasps(variant, wanted)
+    found = judge(closings, places, variant.outline, tolerances=tolerances)
+    return found.outcome, found.grasp_id, _errors(found)
+
+
+def _errors(verdicts: Any) -> FloatArray:
+    return np.column_stack([verdicts.position_error, verdicts.angle_error])
+
+
+def table_of(study: Study, ran: Ran) -> pa.Table:
+    """A row per trial. Lengths in the case's unit, angles in [rad], forces in [closing force]."""
+    count, size = len(ran.trials), study.cage.outline.diameter
+    closings, answers = ran.closings.closings, ran.answers
+    lost = np.ones(count, dtype=np.bool_)
+    lost[ran.done] = ran.outcome[ran.done] == OUTCOMES.index("diverged")
+
+    def of_closings(values: Any, scale: float = 1.0) -> pa.Array:
+        whole = np.zeros(count, dtype=np.asarray(values).dtype)
+        whole[ran.done] = values if scale == 1.0 else np.asarray(values) * scale
+        return pa.array(whole, mask=lost)
+
+    columns: dict[str, Any] = {
+        "trial": ran.trials,
+        "seed": np.full(count, study.config.seed, dtype=np.uint64),
+        **_pose("meant", ran.meant),
+        **_pose("start", ran.starts),
+        **{name: ran.values[name] for name in study.design.names},
+        "verdict": pa.array([VERDICTS[k] for k in answers.verdict]),
+        "in_cage": answers.in_cage,
+        "margin": _known(answers.margin),
+        "target_margin": _known(answers.target_margin),
+        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome]),
+        "grasp_id": ran.grasp_id,
+        **{
+            f"end_{name}": of_closings(closings.end[:, k])
+            for k, name in enumerate(("x", "y", "theta", "sigma"))
+        },
+        "position_error": _known(ran.errors[:, 0] * size),
+        "angle_error": _known(ran.errors[:, 1]),
+        "peak_force": of_closings(ran.closings.peak_force),
+        "penetration_max": of_closings(closings.penetration_max, size),
+        "penetration_rest": of_closings(closings.penetration_rest, size),
+        "steps": of_closings(closings.steps),
+    }
+    return pa.table(columns)
+
+
+def _pose(prefix: str, placements: FloatArray) -> dict[str, Any]:
+    names = ("x", "y", "theta", "sigma")
+    return {
+        f"{prefix}_{name}": np.ascontiguousarray(placements[:, k]) for k, name in enumerate(names)
+    }
+
+
+def _known(values: FloatArray) -> pa.Array:
+    """Numbers, null where there is none."""
+    return pa.array(np.ascontiguousarray(values), mask=np.isnan(values))
+
+
+def target_trials(table: pa.Table) -> IntArray:
+    """(n,) whether each trial ended in the target."""
+    words = table["outcome"].to_pylist()
+    return np.array([word == OUTCOMES[TARGET] for word in words], dtype=np.bool_)

@@ -1,0 +1,139 @@
+"""What a study found: counts, rates with intervals, what each input does, what matters most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from experiments.intervals import wilson
+from experiments.study.config import StudyConfig
+from experiments.study.design import Design
+from experiments.study.indices import sobol, split
+from experiments.study.shard import STUDY_OUTCOMES, target_trials
+from experiments.study.variables import VARIABLES, own_unit
+from icage.arrays import BoolArray, FloatArray
+from icage.membership import VERDICTS
+
+BINS: Final = 10
+"""Of a variable that is not on a grid, with as many trials each as any other."""
+
+_STREAM: Final = 15
+"""Of the random numbers of bootstrap intervals."""
+
+LISTED: Final = 50
+"""Failed trials named in ``study.json``; the table has all."""
+
+
+def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, Any]:
+    """The findings, as they stand in ``study.json``."""
+    reached = target_trials(table)
+    outcomes = np.array(table["outcome"].to_pylist())
+    count = len(reached)
+    low, high = wilson(int(reached.sum()), count)
+    clear = ~np.isin(outcomes, STUDY_OUTCOMES[-3:])
+    failed = np.flatnonzero(~reached)
+    found: dict[str, Any] = {
+        "trials": count,
+        "outcomes": {name: int((outcomes == name).sum()) for name in STUDY_OUTCOMES},
+        "target_rate": float(reached.mean()) if count else None,
+        "target_rate_95": [low, high],
+        "closed": int(clear.sum()),
+        "target_rate_of_closed": float(reached[clear].mean()) if clear.any() else None,
+        "target_rate_of_closed_95": list(wilson(int(reached[clear].sum()), int(clear.sum()))),
+        "grasps": _grasps(table, outcomes),
+        "verdicts": list(_verdicts(table, outcomes, reached)),
+        "position_error_max": _of(table, "position_error", reached, np.max),
+        "angle_error_max": _of(table, "angle_error", reached, np.max),
+        "peak_force_median": _of(table, "peak_force", clear, np.median),
+        "peak_force_max": _of(table, "peak_force", clear, np.max),
+        "penetration_max": _of(table, "penetration_max", clear, np.max),
+        "penetration_rest_max": _of(table, "penetration_rest", clear, np.max),
+        "steps_mean": _of(table, "steps", clear, np.mean),
+        "failed": len(failed),
+        "failed_trials": table["trial"].to_numpy()[failed[:LISTED]].tolist(),
+        "variables": {name: _variable(config, name, table, reached) for name in design.names},
+    }
+    if config.sampling == "saltelli":
+        found["indices"] = _indices(design, reached)
+    return found
+
+
+def _grasps(table: pa.Table, outcomes: Any) -> dict[str, int]:
+    """Trials per grasp of the plan, for those that ended in another one."""
+    ids = table["grasp_id"].to_numpy()[outcomes == "other_grasp"]
+    return {str(k): int((ids == k).sum()) for k in np.unique(ids).tolist()}
+
+
+def _verdicts(table: pa.Table, outcomes: Any, reached: BoolArray) -> Iterator[dict[str, Any]]:
+    """What the planner said of the starts, and what became of them."""
+    verdict = np.array(table["verdict"].to_pylist())
+    caged = table["in_cage"].to_numpy(zero_copy_only=False)
+    for name in VERDICTS:
+        for in_cage in (True, False):
+            here = (verdict == name) & (caged == in_cage)
+            if here.any():
+                yield {
+                    "verdict": name,
+                    "in_cage": in_cage,
+                    "trials": int(here.sum()),
+                    "target": int(reached[here].sum()),
+                    "other_grasp": int((outcomes[here] == "other_grasp").sum()),
+                    "escaped": int((outcomes[here] == "escaped").sum()),
+                }
+
+
+def _of(table: pa.Table, name: str, rows: BoolArray, how: Any) -> float | None:
+    values = np.asarray(table[name].to_numpy(zero_copy_only=False), dtype=np.float64)[rows]
+    values = values[np.isfinite(values)]
+    return float(how(values)) if len(values) else None
+
+
+def _variable(
+    config: StudyConfig, name: str, table: pa.Table, reached: BoolArray
+) -> dict[str, Any]:
+    """Rate of the target over the values of one variable: per grid value, else per decile."""
+    values = table[name].to_numpy()
+    if config.vary[name].kind == "grid":
+        groups = [values == v for v in sorted(set(config.vary[name].parameters))]
+    else:
+        rank = np.empty(len(values), dtype=np.int64)
+        rank[np.argsort(values, kind="stable")] = np.arange(len(values))
+        groups = [rank * BINS // max(len(values), 1) == k for k in range(BINS)]
+    return {"bins": [_bin(values[g], reached[g]) for g in groups if g.any()]}
+
+
+def _bin(values: FloatArray, reached: BoolArray) -> dict[str, Any]:
+    return {
+        "low": float(values.min()),
+        "high": float(values.max()),
+        "mean": float(values.mean()),
+        "trials": len(reached),
+        "target": int(reached.sum()),
+        "rate_95": list(wilson(int(reached.sum()), len(reached))),
+    }
+
+
+def _indices(design: Design, reached: BoolArray) -> dict[str, Any]:
+    """Sobol indices of "ended in the target", per independent input and for placement as one."""
+    names = [name for name, _ in design.groups]
+    parts = split(reached.astype(np.float64), len(names))
+    return asdict(sobol(*parts, names, np.random.default_rng([design.config.seed, _STREAM])))
+
+
+def sentence(found: dict[str, Any], what: str) -> str:
+    """The bottom line."""
+    low, high = found["target_rate_95"]
+    reached = found["outcomes"]["target"]
+    return (
+        f"{reached} of {found['trials']} closings of {what} ended in the target grasp: "
+        f"{100.0 * found['target_rate']:.4g} % (95 %: {100.0 * low:.4g} to {100.0 * high:.4g} %)"
+    )
+
+
+def units(names: Sequence[str], unit: str) -> dict[str, str]:
+    """Unit of every variable's column."""
+    return {name: own_unit(VARIABLES[name], unit) for name in names}
