@@ -50,7 +50,7 @@ class DerivedCaseError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class HandAndObject:
     """What physics simulates: the plan's object, hand and discs, unless a test plants a fault."""
 
     outline: Outline
@@ -64,7 +64,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class PhysicalCase:
-    """A case with discs, its cage, and the world in which the cage is tested.
+    """A case with discs, its cage, and what is simulated to test the cage.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class PhysicalCase:
     cage: Cage
     derived: bool
     another: bool
-    world: World
+    simulated: HandAndObject
 
     @property
     def origin(self) -> str:
@@ -93,8 +93,9 @@ class PhysicalCase:
     def of(
         cls, case: Case, cage: Cage, *, derived: bool = False, another: bool = False
     ) -> PhysicalCase:
-        """In the world that was planned."""
-        return cls(case, cage, derived, another, World(case.outline, cage.hand, case.finger_radius))
+        """Simulated as it was planned."""
+        simulated = HandAndObject(case.outline, cage.hand, case.finger_radius)
+        return cls(case, cage, derived, another, simulated)
 
 
 def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:

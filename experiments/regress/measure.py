@@ -173,7 +173,7 @@ def _second(row: Row, count: int, seed: int) -> Second:
     cage = physical.cage
     if cage.sigma_max is None:
         return Second(closed, None)
-    scene = physical.world.scene()
+    scene = physical.simulated.scene()
     level = at(cage.sigma_max, cage.sigma_0, -1) / scene.thing.unit
     start = scene.start_positions(cage.target_placement.as_array())
     pull = RandomPull(duration=SECOND_ATTACK)
