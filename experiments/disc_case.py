@@ -98,8 +98,12 @@ class PhysicalCase:
         return cls(case, cage, derived, another, simulated)
 
 
-def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
+def physical_case(
+    case: Case, radii: Sequence[float] = RADII, cage: Cage | None = None
+) -> PhysicalCase:
     """The case itself if it has discs, else with discs of a radius in ``radii`` [diameter].
+
+    ``cage`` is the plan of ``case`` where it is known: it is not planned again.
 
     Raises
     ------
@@ -108,9 +112,9 @@ def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
     InputError:
         The case is not a cage: there is nothing to close into.
     """
+    own = _cage(case, cage)
     if case.finger_radius > 0.0:
-        return PhysicalCase.of(case, _cage(case))
-    _cage(case)
+        return PhysicalCase.of(case, own)
     reasons: list[str] = []
     for radius in radii:
         try:
@@ -143,8 +147,8 @@ def _another(case: Case, radii: Sequence[float]) -> PhysicalCase | None:
     return None
 
 
-def _cage(case: Case) -> Cage:
-    cage = plan(case.outline, case.contacts, case.finger_radius)
+def _cage(case: Case, known: Cage | None = None) -> Cage:
+    cage = known or plan(case.outline, case.contacts, case.finger_radius)
     if cage.verdict == "not_a_cage":
         raise InputError(
             f"{case.name} with fingers of radius {case.finger_radius:.6g} {case.unit} is not a "
