@@ -42,7 +42,7 @@ class Arena:
     @classmethod
     def of(cls, physical: PhysicalCase, below: float, threads: int) -> Arena:
         """The arena of a cage; ``below`` [unit] is the level below sigma_max."""
-        cage, scene = physical.cage, physical.world.scene()
+        cage, scene = physical.cage, physical.simulated.scene()
         target = scene.start_positions(cage.target_placement.as_array())[0]
         if cage.escape_path is None:
             return cls(scene, held_model(scene), target, target, None, threads)

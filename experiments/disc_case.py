@@ -50,7 +50,7 @@ class DerivedCaseError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class HandAndObject:
     """What physics simulates: the plan's object, hand and discs, unless a test plants a fault."""
 
     outline: Outline
@@ -64,7 +64,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class PhysicalCase:
-    """A case with discs, its cage, and the world in which the cage is tested.
+    """A case with discs, its cage, and what is simulated to test the cage.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class PhysicalCase:
     cage: Cage
     derived: bool
     another: bool
-    world: World
+    simulated: HandAndObject
 
     @property
     def origin(self) -> str:
@@ -93,12 +93,17 @@ class PhysicalCase:
     def of(
         cls, case: Case, cage: Cage, *, derived: bool = False, another: bool = False
     ) -> PhysicalCase:
-        """In the world that was planned."""
-        return cls(case, cage, derived, another, World(case.outline, cage.hand, case.finger_radius))
+        """Simulated as it was planned."""
+        simulated = HandAndObject(case.outline, cage.hand, case.finger_radius)
+        return cls(case, cage, derived, another, simulated)
 
 
-def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
+def physical_case(
+    case: Case, radii: Sequence[float] = RADII, cage: Cage | None = None
+) -> PhysicalCase:
     """The case itself if it has discs, else with discs of a radius in ``radii`` [diameter].
+
+    ``cage`` is the plan of ``case`` where it is known: it is not planned again.
 
     Raises
     ------
@@ -107,9 +112,9 @@ def physical_case(case: Case, radii: Sequence[float] = RADII) -> PhysicalCase:
     InputError:
         The case is not a cage: there is nothing to close into.
     """
+    own = _cage(case, cage)
     if case.finger_radius > 0.0:
-        return PhysicalCase.of(case, _cage(case))
-    _cage(case)
+        return PhysicalCase.of(case, own)
     reasons: list[str] = []
     for radius in radii:
         try:
@@ -142,8 +147,8 @@ def _another(case: Case, radii: Sequence[float]) -> PhysicalCase | None:
     return None
 
 
-def _cage(case: Case) -> Cage:
-    cage = plan(case.outline, case.contacts, case.finger_radius)
+def _cage(case: Case, known: Cage | None = None) -> Cage:
+    cage = known or plan(case.outline, case.contacts, case.finger_radius)
     if cage.verdict == "not_a_cage":
         raise InputError(
             f"{case.name} with fingers of radius {case.finger_radius:.6g} {case.unit} is not a "

@@ -134,7 +134,7 @@ def escape(case: Case, attacks: int, seed: int, threads: int, report: Report) ->
         why = f"not_a_cage ({cage.why}): nothing to attack"
         return Escape(PhysicalCase.of(case, cage), attacks, seed, why=why)
     try:
-        physical = physical_case(case)
+        physical = physical_case(case, cage=cage)
     except InputError as error:
         blank = Escape(PhysicalCase.of(case, cage), attacks, seed)
         return replace(blank, verdict="no_derived_case", why=str(error))

@@ -47,6 +47,11 @@ class CellsLook:
 class Cells:
     """The engine behind ``plan``. See ``icage.engine.Engine``."""
 
+    @property
+    def complete(self) -> bool:
+        """No connection is missed."""
+        return True
+
     def cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, outline: Outline,
         radius: float,

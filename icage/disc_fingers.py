@@ -3,6 +3,10 @@
 sigma_max grows with the obstacle: chords give a lower bound, tangents an upper one, and both are
 refined until they agree. sigma_first does not (a larger obstacle can make a minimum or destroy
 one), so no polygon bounds it: the smallest value met is the one to trust. [theory.md, 4]
+
+An engine that misses connections (``ContactSpace(tunnels=False)``, for teaching) misses others on
+the next polygon, so that its levels need not grow with the obstacle. Where they do not, the two
+that should be the bracket are reported smaller first; both may be too high.
 """
 
 from __future__ import annotations
@@ -69,7 +73,7 @@ def plan_discs(
         most = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
         why = f"too shallow to tell: sigma_max / sigma_0 is at most {most / sigma_0:.9g}"
         return not_a_cage(outline, hand, contacts, why, radius)
-    return _bracketed(cage, looks, basis, true, contacts, closed)
+    return _bracketed(cage, looks, basis, true, contacts, closed, engine.complete)
 
 
 def _true_target(
@@ -135,6 +139,7 @@ def _bracketed(
     true: FloatArray,
     contacts: FloatArray,
     closed: int,
+    complete: bool,
 ) -> Cage:
     """The cage of the basis polygon with the brackets and the true grasps put in."""
     low = basis.sigma_max
@@ -142,7 +147,9 @@ def _bracketed(
     best_outer = min(outer, key=lambda look: look.sigma_max) if outer else None
     high = best_outer.sigma_max if best_outer is not None else np.inf
     if low > high * (1.0 + 1e-9):
-        raise GeometryError(f"inner sigma_max {low} above outer {high}: a planner's error")
+        if complete:
+            raise GeometryError(f"inner sigma_max {low} above outer {high}: a planner's error")
+        low, high = high, low
     high = max(low, high)
     # on chords the target itself lies a little below the true one, and so may its neighbours
     sigma_0 = float(np.hypot(*(true[1] - true[0])))

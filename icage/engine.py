@@ -38,6 +38,11 @@ class Look(Protocol):
 class Engine(Protocol):
     """A method of computing cages of point fingers."""
 
+    @property
+    def complete(self) -> bool:
+        """Whether no connection is missed. Only then does sigma_max grow with the obstacle."""
+        ...
+
     def cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, outline: Outline,
         radius: float,

@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.text import Text
 
+from experiments.drawing.numbers import significant
 from experiments.drawing.palette import FINGERS, INK, QUIET_INK
 from experiments.drawing.shapes import scale_bar_length
 from experiments.drawing.sheet import Sheet
@@ -66,7 +67,7 @@ def _level(key: str, symbol: str, level: float, cage: Cage, unit: str) -> Line:
     if cage.sigma_first == cage.sigma_max:
         words = "below: closing ends in the target"
     digits = level_digits(cage)
-    ratio = rf"$= {level / cage.sigma_0:.{digits}g}\,\sigma_0$"
+    ratio = rf"$= {significant(level / cage.sigma_0, digits)}\,\sigma_0$"
     return Line(key, symbol, _length(level, unit, digits), ratio, words)
 
 
@@ -80,7 +81,7 @@ def level_digits(cage: Cage) -> int:
 
 
 def _length(value: float, unit: str, digits: int = 4) -> str:
-    return f"{value:.{digits}g} {unit}"
+    return f"{significant(value, digits)} {unit}"
 
 
 def strip_height(lines: tuple[Line, ...]) -> float:
@@ -94,7 +95,7 @@ def draw_caption(sheet: Sheet, cage: Cage, lines: tuple[Line, ...], name: str, u
     phi_1, phi_2 = cage.hand.phi_deg
     words = rf"$\varphi$ = ({phi_1:.1f}°, {phi_2:.1f}°)"
     if cage.finger_radius > 0.0:
-        words += f",  finger radius {_length(cage.finger_radius, unit)}"
+        words += f",  finger radius {cage.finger_radius:.4g} {unit}"
     about = sheet.axes.text(sheet.left, top, words, fontsize=8.5, color=QUIET_INK, va="baseline")
     title = sheet.axes.text(
         sheet.left, top, name, fontsize=11, fontweight="bold", color=INK, va="baseline"

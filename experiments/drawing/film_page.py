@@ -9,6 +9,7 @@ import numpy as np
 
 from experiments.drawing.canvas import Canvas
 from experiments.drawing.caption import level_digits
+from experiments.drawing.numbers import significant
 from experiments.drawing.object_view import ObjectView
 from experiments.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
 from experiments.drawing.plots import Box, Curve, Level, Plot
@@ -130,7 +131,7 @@ def _draw_caption(canvas: Canvas, run: Run) -> None:
     canvas.text(24.0, 674.0, ", ".join(parts), 21.0, INK if fine else BAD, bold=True)
     cage = run.cage
     levels = [
-        rf"{name} = {level / cage.sigma_0:.{level_digits(cage)}g} $\sigma_0$"
+        rf"{name} = {significant(level / cage.sigma_0, level_digits(cage))} $\sigma_0$"
         for name, level in (
             (r"$\sigma_{\mathrm{first}}$", cage.sigma_first),
             (r"$\sigma_{\mathrm{max}}$", cage.sigma_max),

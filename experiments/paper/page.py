@@ -16,6 +16,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from experiments.drawing.numbers import significant
 from experiments.drawing.palette import (
     FINGERS,
     INK,
@@ -178,7 +179,7 @@ def fill(
 
 def level(study: Study, sigma: float) -> str:
     """``1.234 mm`` and the ratio to sigma_0."""
-    value = f"{sigma:.4g} {study.case.unit}"
+    value = f"{significant(sigma)} {study.case.unit}"
     if sigma == study.sigma_0:
         return value
-    return rf"{value} = {sigma / study.sigma_0:.4g}$\,\sigma_0$"
+    return rf"{value} = {significant(sigma / study.sigma_0)}$\,\sigma_0$"

@@ -92,7 +92,7 @@ def close_set(
 
     ``second`` is the cage by the other method, kept with the record.
     """
-    cage, scene = physical.cage, physical.world.scene()
+    cage, scene = physical.cage, physical.simulated.scene()
     starts = starts_of(cage, which, count, rng)
     if not len(starts):
         return None

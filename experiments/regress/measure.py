@@ -97,28 +97,28 @@ def measure(entry: Entry, effort: Effort, seed: int = SEED) -> Row:
     if planned.cells.verdict == "not_a_cage":
         return replace(row, why=f"not_a_cage: {planned.cells.why}")
     try:
-        physical = physical_case(case)
+        physical = physical_case(case, cage=planned.cells)
     except DerivedCaseError as error:
         return replace(row, why=str(error))
     return in_physics(row, physical)
 
 
-def plan_both(case: Case, second: Engine | None = None) -> Planned:
-    """A case by the cells and by the paper's method, or by another in its place."""
-    cells = plan(case.outline, case.contacts, case.finger_radius)
+def plan_both(case: Case, second: Engine | None = None, cells: Cage | None = None) -> Planned:
+    """A case by the cells and by the paper's method, or by another in its place.
+
+    ``cells`` is the cells' plan where it is known.
+    """
+    first = cells or plan(case.outline, case.contacts, case.finger_radius)
     other = plan(case.outline, case.contacts, case.finger_radius, second or ContactSpace())
-    return Planned(case, cells, other)
+    return Planned(case, first, other)
 
 
 def in_physics(row: Row, physical: PhysicalCase) -> Row:
     """Close, attack and shake the physical case of a row."""
     effort, seed = row.effort, row.seed
     streams = np.random.default_rng([seed, 5]).spawn(len(SETS))
-    row = replace(
-        row,
-        physical=physical,
-        physical_plan=plan_both(physical.case) if physical.derived else row.planned,
-    )
+    both = plan_both(physical.case, cells=physical.cage) if physical.derived else row.planned
+    row = replace(row, physical=physical, physical_plan=both)
     if effort.closings:
         closed = _closed(row, effort.closings, streams, lambda s, x: close_many(s, x, 1), None)
         row = replace(row, closed=closed)
@@ -173,7 +173,7 @@ def _second(row: Row, count: int, seed: int) -> Second:
     cage = physical.cage
     if cage.sigma_max is None:
         return Second(closed, None)
-    scene = physical.world.scene()
+    scene = physical.simulated.scene()
     level = at(cage.sigma_max, cage.sigma_0, -1) / scene.thing.unit
     start = scene.start_positions(cage.target_placement.as_array())
     pull = RandomPull(duration=SECOND_ATTACK)

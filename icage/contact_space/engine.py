@@ -110,6 +110,11 @@ class ContactSpace:
     both_ways: bool = True
     merge: bool = True
 
+    @property
+    def complete(self) -> bool:
+        """Whether tunnel edges are taken, and in both directions: else connections are missed."""
+        return self.tunnels and self.both_ways
+
     def cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, outline: Outline,
         radius: float,

@@ -9,7 +9,7 @@ import pytest
 from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import Case, read_case
 from icage.planner import plan
-from models import CASES
+from models import CASES, HARD
 from tests.oracles.grid_flood import bracket_sigma_max
 
 SPIRAL = Path(__file__).with_name("tunnel_spiral.json")
@@ -53,3 +53,17 @@ def test_false_minima_appear_without_tunnel_edges() -> None:
     case = read_case(CASES / "tunnel_golden.json")
     assert len(plan(case.outline, case.contacts, 0.0, CONTACT_SPACE).grasps) == 1
     assert len(plan(case.outline, case.contacts, 0.0, ContactSpace(tunnels=False)).grasps) == 4
+
+
+def test_without_tunnel_edges_the_levels_of_disc_fingers_have_no_order() -> None:
+    """Here the highest of the inner polygons is above the lowest of the outer ones."""
+    case = read_case(HARD / "spiral_tunnel.json")
+    wrong, right = (
+        plan(case.outline, case.contacts, case.finger_radius, engine)
+        for engine in (ContactSpace(tunnels=False), CONTACT_SPACE)
+    )
+    assert wrong.sigma_max == pytest.approx(0.131544953, rel=1e-8)
+    assert wrong.sigma_max_upper == pytest.approx(0.131561897, rel=1e-8)
+    assert right.sigma_max_upper is not None
+    assert wrong.sigma_max is not None
+    assert right.sigma_max_upper < 0.93 * wrong.sigma_max

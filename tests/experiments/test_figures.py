@@ -15,6 +15,7 @@ from PIL import Image
 from experiments.drawing.canvas import Canvas
 from experiments.drawing.caption import LIGHT, caption_lines
 from experiments.drawing.labels import Clutter, place_labels
+from experiments.drawing.numbers import significant
 from experiments.drawing.palette import FINGERS, OBJECT_FILL, tint
 from experiments.drawing.shapes import as_path, tidied
 from experiments.drawing.sheet import Sheet
@@ -75,6 +76,11 @@ def test_levels_that_differ_read_differently():
     assert lines["dark"].value != lines["light"].value
 
 
+def test_zeros_at_the_end_of_a_level_are_written():
+    values = [line.value for line in caption_lines(cage_of("ngon9_best"), "m")]
+    assert values[:3] == ["1.628 m", "1.732 m", "1.940 m"]
+
+
 @pytest.mark.parametrize("name", ["hammer_best", "cross_multi", "T"])
 def test_every_finger_of_both_hands_is_numbered(name: str):
     numbers = [text.split(" ", 1)[1] for text in text_boxes(sheet_of(name))]
@@ -86,7 +92,7 @@ def test_the_caption_says_what_the_plan_says():
     lines = caption_lines(cage, "mm")
     text = " ".join(f"{line.symbol} {line.value} {line.ratio} {line.words}" for line in lines)
     for level in (cage.sigma_0, cage.sigma_first, cage.sigma_max):
-        assert f"{level:.4g} mm" in text
+        assert f"{significant(level)} mm" in text
     assert [line.key for line in lines] == ["target", "dark", "light", "escape"]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import shapely
 
-from experiments.disc_case import PhysicalCase, World, physical_case
+from experiments.disc_case import HandAndObject, PhysicalCase, physical_case
 from experiments.escape import attacked
 from experiments.inputs import find_case
 from experiments.regress.baseline import differences
@@ -51,10 +51,9 @@ def failures(physical: PhysicalCase, effort: Effort) -> tuple[str, ...]:
     return checks(in_physics(Row("case", planned(), 0, effort), physical))
 
 
-def with_world(physical: PhysicalCase, **changes: Any) -> PhysicalCase:
-    world = physical.world
-    values = {"outline": world.outline, "hand": world.hand, "finger_radius": world.finger_radius}
-    return replace(physical, world=World(**{**values, **changes}))
+def simulating(physical: PhysicalCase, **changes: Any) -> PhysicalCase:
+    wrong: HandAndObject = replace(physical.simulated, **changes)
+    return replace(physical, simulated=wrong)
 
 
 def mirrored(outline: Outline) -> Outline:
@@ -103,19 +102,19 @@ def test_no_tunnel_edges_are_caught_by_physics() -> None:
 
 
 def test_a_finger_radius_off_by_two_percent_is_caught(sound: PhysicalCase) -> None:
-    wrong = with_world(sound, finger_radius=1.02 * sound.world.finger_radius)
+    wrong = simulating(sound, finger_radius=1.02 * sound.simulated.finger_radius)
     assert any(line.startswith("guaranteed: 0 of 12") for line in failures(wrong, CLOSE))
 
 
 @pytest.mark.slow
 def test_a_mirrored_object_is_caught(sound: PhysicalCase) -> None:
-    wrong = with_world(sound, outline=mirrored(sound.world.outline))
+    wrong = simulating(sound, outline=mirrored(sound.simulated.outline))
     assert any(line.startswith("guaranteed: 0 of 12") for line in failures(wrong, CLOSE))
 
 
 def test_a_wrong_phi_is_caught(sound: PhysicalCase) -> None:
-    phi_1, phi_2 = sound.world.hand.phi
-    wrong = with_world(sound, hand=HandShape.from_angles(phi_1 + np.radians(0.2), phi_2))
+    phi_1, phi_2 = sound.simulated.hand.phi
+    wrong = simulating(sound, hand=HandShape.from_angles(phi_1 + np.radians(0.2), phi_2))
     assert any(line.startswith("guaranteed: 0 of 12") for line in failures(wrong, CLOSE))
 
 
@@ -290,7 +289,7 @@ def test_bad_input(folder: Path, tmp_path: Path, capsys: Any) -> None:
 
 
 def test_the_outline_of_the_fault_is_a_mirror_image(sound: PhysicalCase) -> None:
-    outline = sound.world.outline
+    outline = sound.simulated.outline
     other = mirrored(outline)
     assert other.area == pytest.approx(outline.area)
     assert not shapely.equals_exact(other.polygon, outline.polygon, 1.0)
