@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from scipy.optimize import minimize
 
-from icage.arrays import FloatArray
+from experiments.least_opening import NoOpeningError, least_opening
+from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case
@@ -39,10 +39,6 @@ MOST_OTHERS: Final = 60
 
 _TOUCHING: Final = 1e-6
 """[diameter] A point finger this near an edge is on it."""
-
-
-_AT_MINIMUM: Final = (0, 8)
-"""SLSQP has converged, or can go no lower for rounding; the planner has the last word."""
 
 
 class DerivedCaseError(InputError):
@@ -166,48 +162,25 @@ def with_discs(case: Case, radius: float) -> Case:
         No minimum is found, or a disc cannot stand there.
     """
     hand = HandShape.from_contacts(case.contacts)
-    contacts = _least_opening(case.outline, hand, case.contacts, radius)
+    finger, edge = _supports(case.outline, case.contacts)
+    try:
+        contacts = least_opening(case.outline, hand, finger, edge, case.contacts, radius)
+    except NoOpeningError as error:
+        raise DerivedCaseError(f"discs of radius {radius:.6g} find no grasp: {error}") from error
     try:
         return Case(case.name, case.unit, case.outline, radius, contacts, case.sources)
     except InputError as error:
         raise DerivedCaseError(f"radius {radius:.6g}: {error}") from error
 
 
-def _least_opening(
-    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float
-) -> FloatArray:
-    """Finger centres (3, 2) of the smallest hand outside the moved edges.
-
-    min |w|^2  s.t.  n . (d + w z_k - a) >= r for every edge (a, n) that finger k touches;
-    relative to the contacts' middle, in diameters.
-    """
-    size, middle = outline.diameter, contacts.mean(axis=0)
+def _supports(outline: Outline, contacts: FloatArray) -> tuple[IntArray, IntArray]:
+    """Finger (m,) and edge (m,) wherever a point finger (3, 2) is on an edge."""
     a = outline.vertices
     side = np.roll(a, -1, axis=0) - a
-    out = np.column_stack([side[:, 1], -side[:, 0]]) / np.hypot(*side.T)[:, None]
-    rows: list[list[float]] = []
-    levels: list[float] = []
+    pairs: list[tuple[int, int]] = []
     for k, point in enumerate(contacts):
         share = np.clip(((point - a) * side).sum(axis=1) / (side**2).sum(axis=1), 0.0, 1.0)
         gap = np.hypot(*(a + share[:, None] * side - point).T)
-        for j in np.flatnonzero(gap <= _TOUCHING * size).tolist():
-            (x, y), z = out[j], complex(hand.z[k])
-            rows.append([x, y, x * z.real + y * z.imag, y * z.real - x * z.imag])
-            levels.append((radius + out[j] @ (a[j] - middle)) / size)
-    matrix, level = np.array(rows).reshape(-1, 4), np.array(levels)
-    d = complex(*(contacts[0] - middle)) / size
-    w = complex(*(contacts[1] - contacts[0])) / size
-    grown = 1.0 + 4.0 * radius / (size * abs(w))
-    found: Any = minimize(
-        lambda v: v[2] ** 2 + v[3] ** 2,
-        np.array([d.real, d.imag, w.real, w.imag]) * grown,
-        jac=lambda v: np.array([0.0, 0.0, 2.0 * v[2], 2.0 * v[3]]),
-        constraints={"type": "ineq", "fun": lambda v: matrix @ v - level, "jac": lambda v: matrix},
-        method="SLSQP",
-        options={"maxiter": 200, "ftol": 1e-15},
-    )
-    if found.status not in _AT_MINIMUM or (matrix @ found.x - level).min() < -_TOUCHING:
-        raise DerivedCaseError(f"discs of radius {radius:.6g} find no grasp: {found.message}")
-    x, y, u, v = found.x.tolist()
-    places = (complex(x, y) + complex(u, v) * hand.z) * size
-    return np.column_stack([places.real, places.imag]) + middle
+        pairs += [(k, j) for j in np.flatnonzero(gap <= _TOUCHING * outline.diameter).tolist()]
+    found = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    return found[:, 0], found[:, 1]
