@@ -1,0 +1,1 @@
+"""Monte Carlo studies: how wrong may placement, friction, shape and hand be?"""
