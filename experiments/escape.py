@@ -108,21 +108,6 @@ def at(level: float, sigma_0: float, sign: int) -> float:
     return level + sign * min(NEAR * level, 0.1 * (level - sigma_0))
 
 
-def wilson_upper(successes: int, trials: int) -> float:
-    """Upper end of Wilson's one-sided 95 % bound on a rate.
-
-    >>> round(wilson_upper(0, 200), 4), wilson_upper(0, 0)
-    (0.0133, 1.0)
-    """
-    if trials == 0:
-        return 1.0
-    z = 1.6448536269514722
-    rate = successes / trials
-    middle = rate + z * z / (2.0 * trials)
-    half = z * math.sqrt(rate * (1.0 - rate) / trials + z * z / (4.0 * trials * trials))
-    return min(1.0, (middle + half) / (1.0 + z * z / trials))
-
-
 def escape(case: Case, attacks: int, seed: int, threads: int, report: Report) -> Escape:
     """Plan one case, derive discs for point fingers, attack and measure with every attacker.
 

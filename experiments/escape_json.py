@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any, Final
 
-from experiments.escape import Assault, Escape, wilson_upper
+from experiments.escape import Assault, Escape
+from experiments.intervals import wilson_upper
 from sim.attack import Attacks
 from sim.measure import Measured
 

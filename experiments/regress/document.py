@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from experiments.escape import Assault, wilson_upper
+from experiments.escape import Assault
+from experiments.intervals import wilson_upper
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
