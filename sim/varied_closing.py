@@ -25,9 +25,9 @@ LOOK_EVERY: Final = 5
 """[step] Between two looks at a closing: depth, force and stillness are seen this often."""
 
 CREEP_SPEED: Final = 1e-3
-"""[diameter / s, rad / s] Rough trials slower than this for ``CREEP_STEPS`` are at rest. Sticking
-is regularized in the engine, so a jammed object creeps, at 1e-5 to 3e-4 (seen); sliding ones move
-at 1e-2 or more."""
+"""[diameter / s, rad / s] Trials with friction, of fingers or table, slower than this for
+``CREEP_STEPS`` are at rest. Sticking is regularized in the engine, so a jammed object creeps, at
+1e-5 to 3e-4 (seen); sliding ones move at 1e-2 or more."""
 
 CREEP_STEPS: Final = 100
 """[step] In this time a creeping object moves by less than 1e-4."""
@@ -108,7 +108,8 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
     force, warning = batch.bind("sensordata"), batch.warning
     batch.bind("ncon")  # read at the end: a field bound after the last step would be 0
     total = sum(len(rows) for _, rows in lot)
-    rough = np.concatenate([worlds.friction[rows] > 0.0 for _, rows in lot])
+    held_up = (worlds.friction > 0.0) | (worlds.table_friction > 0.0)
+    rough = np.concatenate([held_up[rows] for _, rows in lot])
     creeping, peak = np.zeros(total, dtype=np.int64), np.zeros(total)
     running = np.arange(total)
     while len(running):
@@ -142,7 +143,7 @@ def _look(
         return running
     watch.observe(running, positions[first:last], velocities[first:last])
     slow = creeping[first:last] >= CREEP_STEPS
-    still = slow & (watch.ending == RUNNING) & (watch.touches >= 2)
+    still = slow & (watch.ending == RUNNING) & (watch.touches >= 1)
     watch.ending[still] = SETTLED
     if len(bad):
         watch.diverged(bad[(bad >= first) & (bad < last)] - first)

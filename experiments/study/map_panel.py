@@ -1,0 +1,160 @@
+"""One panel of the placement map: object, target grasp, caging regions, hexagons of rates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Colormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, PathPatch, Polygon, Rectangle
+
+from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
+from experiments.drawing.palette import Colour as Rgb
+from experiments.drawing.shapes import as_path, scale_bar_length, tidied
+from experiments.drawing.sheet import Bounds
+from experiments.study.hexagons import Hexagons
+from experiments.study.pictures import Page
+from icage.arrays import FloatArray
+from icage.cage import Cage
+from icage.regions import FingerRegion
+
+_DOT: Final = 2.6
+"""[pt] Least radius of a finger."""
+
+_HAIRLINE: Final = 0.4
+"""[pt] Slits of the regions' inner bounds narrower than this are not drawn."""
+
+
+def colours() -> Colormap:
+    """Rates from 0 to 1: cividis, even in lightness, read alike with any kind of colour vision."""
+    return matplotlib.colormaps["cividis"]
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A window onto the object's frame, for one finger (0..2) or, at -1, for all.
+
+    ``zoom`` in [pt] per unit of length.
+    """
+
+    finger: int
+    window: Bounds
+    zoom: float
+
+    @property
+    def title(self) -> str:
+        """Which finger."""
+        return "where the close-ups lie" if self.finger < 0 else f"finger {self.finger + 1}"
+
+    @property
+    def ink(self) -> Rgb:
+        """Its colour."""
+        return QUIET_INK if self.finger < 0 else FINGERS[self.finger]
+
+    def frames(self, axes: Axes, windows: Sequence[Bounds]) -> None:
+        """Draw the windows of the three fingers' panels."""
+        for colour, (x_0, y_0, x_1, y_1) in zip(FINGERS, windows, strict=True):
+            axes.add_patch(
+                Rectangle((x_0, y_0), x_1 - x_0, y_1 - y_0, fc="none", ec=colour, lw=1.0, zorder=8)
+            )
+
+
+def draw_panel(
+    axes: Axes,
+    panel: Panel,
+    cage: Cage,
+    regions: Sequence[FingerRegion],
+    bins: Hexagons | None,
+    crosses: FloatArray,
+    meant: FloatArray,
+) -> None:
+    """Draw everything inside the panel's window.
+
+    ``crosses`` (n, 2) are starts of failed closings, ``meant`` (m, 2) where fingers should start.
+    """
+    x_0, y_0, x_1, y_1 = panel.window
+    axes.set_xlim(x_0, x_1)
+    axes.set_ylim(y_0, y_1)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    for spine in axes.spines.values():
+        spine.set(color=QUIET_INK, linewidth=0.5)
+    if bins is not None and len(bins.trials):
+        faces = colours()(bins.hits / bins.trials)
+        axes.add_collection(
+            PolyCollection(
+                list(bins.corners), facecolors=faces, edgecolors=faces, lw=0.3, zorder=1
+            ),
+            autolim=False,
+        )
+    path = as_path(cage.outline.polygon)
+    axes.add_patch(PathPatch(path, fc=OBJECT_FILL, ec=OBJECT_EDGE, lw=0.8, zorder=2))
+    for region in regions:
+        _draw_region(axes, region, panel.zoom, is_solid(cage, region.level_name))
+    _draw_target(axes, panel, cage)
+    draw_crosses(axes, crosses)
+    draw_meant(axes, meant)
+
+
+def draw_crosses(axes: Axes, places: FloatArray) -> None:
+    """Small dark crosses, at (n, 2)."""
+    if len(places):
+        axes.plot(*places.T, ls="", marker="x", color=INK, ms=3.0, mew=0.9, zorder=6)
+
+
+def draw_meant(axes: Axes, places: FloatArray) -> None:
+    """Small white diamonds, at (n, 2)."""
+    if len(places):
+        axes.plot(*places.T, ls="", marker="D", mfc=PAPER, mec=INK, ms=4.0, mew=0.9, zorder=9)
+
+
+def is_solid(cage: Cage, level_name: str) -> bool:
+    """Whether a region at this level holds only starts whose closings end in the target."""
+    return level_name == "sigma_first" or cage.sigma_first == cage.sigma_max
+
+
+def region_style(solid: bool) -> tuple[float, Any]:
+    """Width and dashes of a region's outline."""
+    return (1.2, "-") if solid else (0.9, (0, (3.0, 2.0)))
+
+
+def _draw_region(axes: Axes, region: FingerRegion, zoom: float, solid: bool) -> None:
+    path = as_path(tidied(region.geometry, _HAIRLINE / zoom))
+    width, dashes = region_style(solid)
+    colour = FINGERS[region.finger - 1]
+    if solid:
+        axes.add_patch(PathPatch(path, fc="none", ec=PAPER, lw=width + 1.4, zorder=3))
+    axes.add_patch(PathPatch(path, fc="none", ec=colour, lw=width, ls=dashes, zorder=4))
+
+
+def _draw_target(axes: Axes, panel: Panel, cage: Cage) -> None:
+    """The target's triangle; its fingers solid, but hollow those that the panel is not about."""
+    axes.add_patch(
+        Polygon(cage.contacts, closed=True, fc="none", ec=INK, lw=1.0, joinstyle="round", zorder=5)
+    )
+    radius = max(cage.finger_radius, _DOT / panel.zoom)
+    for k, (corner, colour) in enumerate(zip(cage.contacts, FINGERS, strict=True)):
+        mine = panel.finger in (k, -1)
+        axes.add_patch(
+            Circle(
+                (float(corner[0]), float(corner[1])), radius, fc=colour if mine else PAPER,
+                ec=PAPER if mine else colour, lw=0.6 if mine else 1.0, zorder=7,
+            )
+        )  # fmt: skip
+
+
+def draw_scale_bar(page: Page, x: float, y: float, zoom: float, unit: str) -> None:
+    """A scale bar that starts at (x, y) of the page, its length written behind it."""
+    length = scale_bar_length(70.0 / zoom)
+    axes = page.axes(x, y - 2.5, length * zoom, 5.0)
+    axes.set_axis_off()
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(-1.0, 1.0)
+    for xs, ys in (((0, 1), (0, 0)), ((0, 0), (-1, 1)), ((1, 1), (-1, 1))):
+        axes.add_line(Line2D(xs, ys, color=INK, lw=1.0, clip_on=False, solid_capstyle="butt"))
+    page.text(x + length * zoom + 5.0, y - 2.7, f"{length:g} {unit}", 7.5)

@@ -1,0 +1,81 @@
+"""Pages in points (1/72 inch) for a study's pictures: axes, text, and the file, the same bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from experiments.drawing.palette import INK, QUIET_INK
+from experiments.figures import FIGURE_SETTINGS, FORMATS
+from experiments.whole_files import whole_file
+from icage.errors import InputError
+
+WIDE: Final = 504.0
+"""[pt] A page as wide as both columns of a journal."""
+
+MARGIN: Final = 14.0
+"""[pt]"""
+
+ROW: Final = 13.0
+"""[pt] From one line of text to the next."""
+
+
+class Page:
+    """A figure of so many points, y up; drawn on with axes and text placed in points."""
+
+    def __init__(self, width: float, height: float) -> None:
+        self.width, self.height = width, height
+        self.figure = Figure(figsize=(width / 72.0, height / 72.0), facecolor="white")
+        FigureCanvasAgg(self.figure)
+
+    def axes(self, x: float, y: float, width: float, height: float, **given: Any) -> Axes:
+        """Axes whose lower left corner is (x, y)."""
+        box = (x / self.width, y / self.height, width / self.width, height / self.height)
+        return self.figure.add_axes(box, **given)
+
+    def text(self, x: float, y: float, words: str, size: float = 8.5, **given: Any) -> float:
+        """A line of text on the baseline y, starting at x; its width, [pt]."""
+        style = {"color": INK, "va": "baseline", **given}
+        text = self.figure.text(x / self.width, y / self.height, words, fontsize=size, **style)
+        return float(text.get_window_extent().width * 72.0 / self.figure.dpi)
+
+    def caption(self, y: float, title: str, lines: list[str]) -> None:
+        """A bold title on the baseline y, quiet lines below it."""
+        self.text(MARGIN, y, title, 10.0, fontweight="bold")
+        for k, line in enumerate(lines, 1):
+            self.text(MARGIN, y - ROW * k, line, 8.5, color=QUIET_INK)
+
+
+@contextmanager
+def settings() -> Generator[None]:
+    """The settings of matplotlib for every picture; whatever the user's are."""
+    with matplotlib.rc_context(FIGURE_SETTINGS):
+        yield
+
+
+def check_suffix(path: Path) -> None:
+    """Refuse a name that says no format.
+
+    Raises
+    ------
+    InputError:
+        The suffix is neither .svg nor .png.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
+
+
+def write(figure: Figure, path: Path) -> None:
+    """Write a figure, whole or not at all, the same bytes every time; inside ``settings``."""
+    with whole_file(path) as part:
+        if path.suffix.lower() == ".svg":
+            figure.savefig(part, format="svg", metadata={"Date": None})
+        else:
+            figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
