@@ -55,8 +55,13 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         raise ConfigError("--out DIR is needed")
     path = Path(out)
     table = dict(given)
+    instead = table.pop("instead", None)
     if "case" in table and table["case"].lower().endswith(".toml"):
         table = _with_file(Path(table.pop("case")), table)
+        if instead is not None:
+            table["case"] = instead
+    elif instead is not None:
+        raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
     check_folder("--out", path, (JSON, TRIALS, PAGE))
     old = read_document(path)
     if old is not None and not resume:
