@@ -32,7 +32,7 @@ from sim.engine import mj
 _STRIP: Final = 70.0
 """[pt] Below the picture, for words."""
 
-_ARROW: Final = 0.13
+_ARROW: Final = 0.09
 """[diameter] Length of an arrow for the largest force."""
 
 
@@ -109,7 +109,7 @@ def draw_jam(done: StudyRerun, path: Path) -> None:
             _STRIP - 16.0,
             f"Jammed: trial {done.index}, friction {mu:.3g}",
             [
-                "Shaded: the cones of friction at the contacts, atan(mu) to both sides of the normal.",
+                "Shaded: the cones of friction at the contacts, atan(mu) either side of the normal.",
                 "Arrows: the forces on the object; they balance inside the cones. Dashed: the hand",
                 f"in the target grasp, {angle:.3g} degrees and {done.now['position_error']:.3g} "
                 f"{study.case.unit} away.",
@@ -123,7 +123,7 @@ def _draw_press(axes: Axes, one: Press, mu: float, length: float, most: float) -
     half = math.atan(mu)
     middle = math.atan2(one.inward[1], one.inward[0])
     rim = np.linspace(middle - half, middle + half, 24)
-    arc = one.point + 1.3 * length * np.column_stack([np.cos(rim), np.sin(rim)])
+    arc = one.point + 1.6 * length * np.column_stack([np.cos(rim), np.sin(rim)])
     colour = FINGERS[one.finger]
     axes.add_patch(Polygon(np.vstack([one.point, arc]), fc=colour, ec="none", alpha=0.22, zorder=4))
     tip = one.point + length * one.force / most
