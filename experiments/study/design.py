@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from scipy.stats import qmc
@@ -105,9 +105,7 @@ class Design:
             bits.advance(first * dimensions)  # one draw a number
             piece = np.random.Generator(bits).random((count, dimensions))
         else:
-            sequence = sobol(dimensions, np.random.default_rng(seed))
-            sequence.fast_forward(first)
-            piece = sequence.random(count)
+            piece = sobol_points(dimensions, first, count, np.random.default_rng(seed))
         return piece[rows - first]
 
     def _grids(self, trials: IntArray) -> dict[str, FloatArray]:
@@ -122,9 +120,16 @@ class Design:
         return found
 
 
-def sobol(dimensions: int, rng: np.random.Generator) -> Any:
-    """A scrambled Sobol sequence; the parameter was called ``seed`` before SciPy 1.15."""
-    return qmc.Sobol(dimensions, scramble=True, rng=rng, bits=48)
+def sobol_points(dimensions: int, first: int, count: int, rng: np.random.Generator) -> FloatArray:
+    """Points (count, d) of a scrambled Sobol sequence from number ``first`` on.
+
+    SciPy forwards sequences of up to 32 bits only, and by one point at least; a piece from its
+    start is drawn in a power of two, since it warns of any other number.
+    """
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=rng, bits=32)
+    if first == 0:
+        return np.asarray(sequence.random(1 << (count - 1).bit_length())[:count])
+    return np.asarray(sequence.fast_forward(first).random(count))
 
 
 def base_points(trials: int, groups: int) -> int:

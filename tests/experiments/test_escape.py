@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.disc_case import PhysicalCase
+from experiments.arena import Arena
+from experiments.disc_case import PhysicalCase, physical_case
 from experiments.escape import Assault, Escape, at, attacked, judged
+from icage.formats.case_json import read_case
 from models import CASES
-from sim.attack import ESCAPED, HELD, Attacks
+from sim.attack import ESCAPED, HELD, Attacks, attack
+from sim.guided_attack import GuidedDriver, GuidedPull
 from sim.measure import Measured
 from tests.cli.runner import here
 from tests.experiments.small import cage_of, t_case, write_case
@@ -136,3 +139,29 @@ def test_a_sigma_max_that_is_too_small_is_found():
     assert result.verdict == "failed"
     assert any("guided" in sentence and words in sentence for sentence in result.failures)
     assert any("guided" in sentence and "measure" in sentence for sentence in result.failures)
+
+
+@pytest.mark.slow
+def test_a_second_attempt_comes_through_a_narrow_pass():
+    """Number 7 of these was knocked back at the pass before the hand was wide open, and wedged."""
+    physical = physical_case(read_case(CASES / "Z_twofold_multi.json"))
+    cage, unit = physical.cage, physical.case.outline.diameter
+    assert cage.sigma_max is not None
+    assert cage.sigma_max_upper is not None
+    arena = Arena.of(physical, at(cage.sigma_max, cage.sigma_0, -1), 2)
+    assert arena.path is not None
+    starts = np.repeat(arena.target[None, :], 8, axis=0)
+
+    def attacked_at(level: float, stream: int, retries: int) -> Attacks:
+        openings, rng = np.full(8, level / unit), np.random.default_rng([0, 4]).spawn(9)[stream]
+        pull = GuidedPull(retries=retries)
+        driver = GuidedDriver(arena.scene, openings, arena.path, rng, pull)
+        return attack(arena.scene, arena.model, starts, openings, driver, 2)
+
+    above = at(cage.sigma_max_upper, cage.sigma_0, 1)
+    once, again = attacked_at(above, 4, 0), attacked_at(above, 4, GuidedPull().retries)
+    assert once.ending.tolist() == 7 * [ESCAPED] + [HELD]
+    assert again.escapes == 8
+    assert np.array_equal(once.end[:7], again.end[:7])  # what was never stuck is what it was
+    assert np.array_equal(once.steps[:7], again.steps[:7])
+    assert attacked_at(at(cage.sigma_max, cage.sigma_0, -1), 3, GuidedPull().retries).escapes == 0

@@ -11,7 +11,7 @@ from icage.cage import Cage
 from icage.errors import InputError
 from icage.planner import plan
 from sim.attack import DIVERGED, ESCAPED, HELD, Attacks, attack
-from sim.guided_attack import GuidedDriver, object_path
+from sim.guided_attack import GuidedDriver, GuidedPull, object_path
 from sim.held_hand import held_batch, held_model
 from sim.measure import measure
 from sim.random_attack import RandomDriver, RandomPull
@@ -111,6 +111,39 @@ def test_the_way_out_works_above_sigma_max_and_not_below():
     run = guided_attacks(top * np.array([0.998, 0.998, 1.002, 1.002]), 1)
     assert run.ending.tolist() == [HELD, HELD, ESCAPED, ESCAPED]
     assert run.penetration_max.max() < 1e-3
+
+
+def led_in_vain(retries: int) -> list[np.ndarray]:
+    """Wrench and motor of every step in which an object that nothing moves is led, till it is held.
+
+    The first of the two has passed a third of the time to get stuck when the second begins.
+    """
+    scene, cage = t_cage()
+    assert cage.escape_path is not None
+    path, openings = object_path(scene, cage.escape_path), np.full(2, 1.1 * cage.sigma_0)
+    pull = GuidedPull(retries=retries)
+    driver = GuidedDriver(
+        scene, openings / scene.thing.unit, path, np.random.default_rng(0), pull
+    )
+    qpos, wrench, motor = targets(2), np.zeros((2, 3)), np.zeros(2)
+    seen: list[np.ndarray] = []
+    for step in range(driver.max_steps):
+        first = step < 200
+        given_up = driver.drive(np.arange(1 if first else 2), step, qpos, wrench, motor)
+        seen.append(np.column_stack([wrench, motor]))
+        if len(given_up):
+            assert not first
+            return seen
+    raise AssertionError("never held")
+
+
+def test_what_is_stuck_comes_again_before_it_is_held():
+    once, thrice = led_in_vain(0), led_in_vain(2)
+    patience = GuidedPull().patience / t_cage()[0].config.time_step
+    assert patience < len(once) < 2.0 * patience
+    assert 3.0 * patience < len(thrice) < 6.0 * patience
+    assert np.array_equal(once, thrice[: len(once)])  # till then it is the same attack
+    assert np.hypot(*np.array(thrice)[:, 0, :2].T).max() < 300.0 * (0.5 + 0.1 * np.sqrt(2.0))
 
 
 def threshold(openings: np.ndarray, _rng: np.random.Generator) -> Attacks:
