@@ -173,22 +173,33 @@ def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -
 def _judged(
     study: Study, variant: Variant, closings: ClosingOutcomes
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """Outcome (k,), grasp (k,) and errors (k, 2) of closings of one variant."""
+    """Outcome (k,), grasp (k,) and errors (k, 2) of closings of one variant.
+
+    On a variant, an end off the target is compared with the grasps of the plan nearest to it, at
+    their places there: with its own ones, so that no other trial decides what it is called.
+    """
     config, grasps = study.config, study.cage.grasps
     near = config.position_tolerance, config.angle_tolerance
     tolerances = Tolerances(*near, *near)
-    wanted = grasps
-    if not variant.planned:
-        target = study.variants.grasps(variant, grasps[:1])
-        first = judge(closings, target, variant.outline, tolerances=tolerances)
-        if not (first.outcome == UNMATCHED).any():
-            return first.outcome, first.grasp_id, _errors(first)
-        ends = closings.end[first.outcome == UNMATCHED]
-        far = [grasp_errors(ends, g, study.cage.outline)[0].min() for g in grasps[1:]]
-        wanted = (grasps[0], *(grasps[1 + k] for k in np.argsort(far)[:_NEAREST]))
-    places = study.variants.grasps(variant, wanted)
-    found = judge(closings, places, variant.outline, tolerances=tolerances)
-    return found.outcome, found.grasp_id, _errors(found)
+    if variant.planned:
+        found = judge(closings, grasps, variant.outline, tolerances=tolerances)
+        return found.outcome, found.grasp_id, _errors(found)
+    places = {0: study.variants.grasps(variant, grasps[:1])[0]}
+    found = judge(closings, [places[0]], variant.outline, tolerances=tolerances)
+    outcome, grasp_id = found.outcome.copy(), found.grasp_id.copy()
+    astray = np.flatnonzero(outcome == UNMATCHED)
+    ends = closings.end[astray]
+    seen = [grasp_errors(ends, grasp, study.cage.outline) for grasp in grasps[1:]]
+    off = np.array([np.maximum(at / near[0], turn / near[1]) for at, turn in seen])
+    for row, far in zip(astray.tolist(), off.reshape(len(seen), len(astray)).T, strict=True):
+        nearest = 1 + np.argsort(far, kind="stable")[:_NEAREST]
+        for k in nearest.tolist():
+            if k not in places:
+                places[k] = study.variants.grasps(variant, grasps[k : k + 1])[0]
+        mine = [places[k] for k in (0, *nearest.tolist())]
+        one = judge(closings.picked(np.array([row])), mine, variant.outline, tolerances=tolerances)
+        outcome[row], grasp_id[row] = one.outcome[0], one.grasp_id[0]
+    return outcome, grasp_id, _errors(found)
 
 
 def _errors(verdicts: Any) -> FloatArray:
