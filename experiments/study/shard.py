@@ -76,6 +76,11 @@ class Ran:
     variants: list[Variant]
     which: IntArray
 
+    @property
+    def sizes(self) -> FloatArray:
+        """(n,) diameters of the true objects: what the engine calls 1."""
+        return np.array([variant.outline.diameter for variant in self.variants])[self.which]
+
 
 def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
     """Draw, close and judge trials (n,), given in ascending order."""
@@ -98,13 +103,11 @@ def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
         elif _collides(variant, starts[i]):
             outcome[i] = COLLISION_AT_START
     done = np.flatnonzero(outcome < 0)
-    scenes = [(v or study.variants.planned).scene for v in variants]
-    closings = close_varied(
-        scenes, which[done], starts[done], worlds_of(study, values, starts)[done]
-    )
+    known = [v or study.variants.planned for v in variants]
+    worlds = worlds_of(values, starts, np.array([v.outline.diameter for v in known])[which])
+    closings = close_varied([v.scene for v in known], which[done], starts[done], worlds[done])
     errors = np.full((len(trials), 2), np.nan)
     grasp_id = np.full(len(trials), -1, dtype=np.int64)
-    known = [v or study.variants.planned for v in variants]
     for number in np.unique(which[done]).tolist():
         here = np.flatnonzero(which[done] == number)
         rows = done[here]
@@ -148,11 +151,12 @@ def _collides(variant: Variant, start: FloatArray) -> bool:
     return collides(variant.outline, fingers, variant.finger_radius, COLLISION)
 
 
-def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -> Worlds:
-    """Worlds (n). The table's slope is told in the object's axes at the start, the engine's gravity
-    in the palm's: turned back by theta. Weight goes with the mass.
+def worlds_of(values: dict[str, FloatArray], starts: FloatArray, sizes: FloatArray) -> Worlds:
+    """Worlds (n) of true objects with diameters ``sizes`` (n,).
+
+    The table's slope is told in the object's axes at the start, the engine's gravity in the
+    palm's: turned back by theta. Weight goes with the mass.
     """
-    size = study.cage.outline.diameter
     pull = values["weight"] * np.sin(values["tilt"])
     direction = values["tilt_direction"] - starts[:, 2]
     return Worlds(
@@ -163,8 +167,8 @@ def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -
         gravity_y=pull * np.sin(direction),
         mass=values["mass"],
         inertia=values["inertia"],
-        com_x=values["com_x"] / size,
-        com_y=values["com_y"] / size,
+        com_x=values["com_x"] / sizes,
+        com_y=values["com_y"] / sizes,
         speed=values["speed"],
         force=values["force"],
     )
@@ -208,14 +212,14 @@ def _errors(verdicts: Any) -> FloatArray:
 
 def table_of(study: Study, ran: Ran) -> pa.Table:
     """A row per trial. Lengths in the case's unit, angles in [rad], forces in [closing force]."""
-    count, size = len(ran.trials), study.cage.outline.diameter
+    count, sizes = len(ran.trials), ran.sizes
     closings, answers = ran.closings.closings, ran.answers
     lost = np.ones(count, dtype=np.bool_)
     lost[ran.done] = ran.outcome[ran.done] == OUTCOMES.index("diverged")
 
-    def of_closings(values: Any, scale: float = 1.0) -> pa.Array:
+    def of_closings(values: Any) -> pa.Array:
         whole = np.zeros(count, dtype=np.asarray(values).dtype)
-        whole[ran.done] = values if scale == 1.0 else np.asarray(values) * scale
+        whole[ran.done] = values
         return pa.array(whole, mask=lost)
 
     columns: dict[str, Any] = {
@@ -234,11 +238,11 @@ def table_of(study: Study, ran: Ran) -> pa.Table:
             f"end_{name}": of_closings(closings.end[:, k])
             for k, name in enumerate(("x", "y", "theta", "sigma"))
         },
-        "position_error": _known(ran.errors[:, 0] * size),
+        "position_error": _known(ran.errors[:, 0] * sizes),
         "angle_error": _known(ran.errors[:, 1]),
         "peak_force": of_closings(ran.closings.peak_force),
-        "penetration_max": of_closings(closings.penetration_max, size),
-        "penetration_rest": of_closings(closings.penetration_rest, size),
+        "penetration_max": of_closings(closings.penetration_max * sizes[ran.done]),
+        "penetration_rest": of_closings(closings.penetration_rest * sizes[ran.done]),
         "steps": of_closings(closings.steps),
     }
     return pa.table(columns)

@@ -122,9 +122,7 @@ def led_in_vain(retries: int) -> list[np.ndarray]:
     assert cage.escape_path is not None
     path, openings = object_path(scene, cage.escape_path), np.full(2, 1.1 * cage.sigma_0)
     pull = GuidedPull(retries=retries)
-    driver = GuidedDriver(
-        scene, openings / scene.thing.unit, path, np.random.default_rng(0), pull
-    )
+    driver = GuidedDriver(scene, openings / scene.thing.unit, path, np.random.default_rng(0), pull)
     qpos, wrench, motor = targets(2), np.zeros((2, 3)), np.zeros(2)
     seen: list[np.ndarray] = []
     for step in range(driver.max_steps):
