@@ -135,8 +135,8 @@ def _variants(
     number: dict[Key, int] = {}
     made: list[Variant | None] = []
     which = np.empty(len(trials), dtype=np.int64)
-    for row, trial in enumerate(trials.tolist()):
-        key = study.variants.key(values, row, trial)
+    for row, shape in enumerate(study.design.shapes(trials).tolist()):
+        key = study.variants.key(values, row, shape)
         if key not in number:
             number[key] = len(made)
             made.append(study.variants.make(key))
