@@ -106,8 +106,11 @@ def settings(scene: Scene, worlds: Worlds) -> Iterator[Setting]:
         arm = mean_distance(scene.thing.vertices)
         loss = np.column_stack([force, force, force * arm])
         yield Setting("dof_frictionloss", (_OBJECT,), loss)
+        # as stiff as a contact: with the engine's usual time constant what sticks creeps at 1e-3
         stiff = np.broadcast_to(config.solimp, (len(worlds), 3, 5))
         yield Setting("dof_solimp", (_OBJECT,), stiff)
+        prompt = np.broadcast_to(config.solref, (len(worlds), 3, 2))
+        yield Setting("dof_solref", (_OBJECT,), prompt)
     if differs("gravity_x", "gravity_y"):
         pull = np.column_stack([worlds.gravity_x, worlds.gravity_y]) * config.drive_force
         yield Setting("opt.gravity", (slice(0, 2),), pull)

@@ -2,7 +2,8 @@
 
 Trials that share a scene run together on one model; the others, one model each, run together where
 their models have the same layout. Every trial is looked at every ``LOOK_EVERY`` steps. Its result
-depends on nothing but its own scene, world and start.
+depends on nothing but its own scene, world and start. Free travel is skipped (``sim.approach``)
+but on a tilted table, where the object slides meanwhile.
 """
 
 from __future__ import annotations
@@ -161,7 +162,8 @@ def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tupl
     for scene, rows in lot:
         here = slice(first, first + len(rows))
         qpos = scene.start_positions(starts[rows])
-        begin[here] = approached(scene, qpos)
+        level = (worlds.gravity_x[rows] == 0.0) & (worlds.gravity_y[rows] == 0.0)
+        begin[here] = np.where(level[:, None], approached(scene, qpos), qpos)
         pull[here, 0] = scene.closing_force * worlds.force[rows]
         changes: list[Setting] = list(settings(scene, worlds[rows]))
         if len(lot) == 1 and len(rows) >= TOGETHER:

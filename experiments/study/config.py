@@ -68,7 +68,8 @@ class StudyConfig:
                     f"until_half_width with sampling = {self.sampling!r}: its design is made for "
                     "all trials; random is needed"
                 )
-        varied = self.starts != "nominal" or any(d.varies for d in self.vary.values())
+        drawn = self.starts != "nominal" or self.noisy
+        varied = drawn or any(d.varies for d in self.vary.values())
         if self.sampling == "saltelli" and not varied:
             raise ConfigError("sampling = 'saltelli' needs at least one variable that varies")
         grids = [name for name, d in self.vary.items() if d.kind == "grid"]
@@ -85,6 +86,11 @@ class StudyConfig:
     def rough(self) -> bool:
         """Whether any trial may have friction between fingers and object."""
         return self.distribution("friction").high > 0.0
+
+    @property
+    def noisy(self) -> bool:
+        """Whether any trial may have noise on its outline."""
+        return self.distribution("outline_noise").high > 0.0
 
     def document(self) -> dict[str, Any]:
         """As kept in ``study.json``: lengths in the case's unit, angles in [rad]."""

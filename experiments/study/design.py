@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from scipy.stats import qmc
@@ -36,7 +36,7 @@ class Design:
         Variables that vary; columns of the quantiles.
     groups:
         Saltelli's design: columns that are exchanged together. Placement is one group, with the
-        drawn start in it.
+        drawn start in it; the shape of the boundary's noise goes with its size.
     total:
         Trials, all of them.
     """
@@ -53,7 +53,10 @@ class Design:
         if config.sampling != "saltelli":
             return cls(config, names, (), config.trials)
         placed = tuple(k for k, n in enumerate(names) if VARIABLES[n].group == "placement")
+        groups: list[tuple[str, tuple[int, ...]]]
         groups = [(n, (k,)) for k, n in enumerate(names) if k not in placed]
+        if "outline_noise" not in names and config.noisy:
+            groups.append(("outline_noise", ()))
         if placed or config.starts != "nominal":
             groups.append(("placement", placed))
         base = base_points(config.trials, len(groups))
@@ -69,14 +72,19 @@ class Design:
             found[name] = self.config.vary[name].values(uniform[:, k])
         return found | self._grids(trials)
 
-    def streams(self, trials: IntArray) -> tuple[IntArray, IntArray]:
+    def streams(self, trials: IntArray, group: str = "placement") -> tuple[IntArray, IntArray]:
         """Which start each trial takes, (n,) number and (n,) stream; stream 1 is Saltelli's B."""
         if not self.groups:
             return trials, np.zeros_like(trials)
         width = len(self.groups) + 2
         member = trials % width
-        swapped = [2 + k for k, (name, _) in enumerate(self.groups) if name == "placement"]
+        swapped = [2 + k for k, (name, _) in enumerate(self.groups) if name == group]
         return trials // width, np.isin(member, [1, *swapped]).astype(np.int64)
+
+    def shapes(self, trials: IntArray) -> IntArray:
+        """Which shape of the boundary's noise each trial has, (n,): as with the starts."""
+        number, stream = self.streams(trials, "outline_noise")
+        return 2 * number + stream
 
     def _quantiles(self, trials: IntArray) -> FloatArray:
         """Quantiles (n, d) of the varying variables."""
@@ -105,9 +113,7 @@ class Design:
             bits.advance(first * dimensions)  # one draw a number
             piece = np.random.Generator(bits).random((count, dimensions))
         else:
-            sequence = sobol(dimensions, np.random.default_rng(seed))
-            sequence.fast_forward(first)
-            piece = sequence.random(count)
+            piece = sobol_points(dimensions, first, count, np.random.default_rng(seed))
         return piece[rows - first]
 
     def _grids(self, trials: IntArray) -> dict[str, FloatArray]:
@@ -122,9 +128,16 @@ class Design:
         return found
 
 
-def sobol(dimensions: int, rng: np.random.Generator) -> Any:
-    """A scrambled Sobol sequence; the parameter was called ``seed`` before SciPy 1.15."""
-    return qmc.Sobol(dimensions, scramble=True, rng=rng, bits=48)
+def sobol_points(dimensions: int, first: int, count: int, rng: np.random.Generator) -> FloatArray:
+    """Points (count, d) of a scrambled Sobol sequence from number ``first`` on.
+
+    SciPy forwards sequences of up to 32 bits only, and by one point at least; a piece from its
+    start is drawn in a power of two, since it warns of any other number.
+    """
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=rng, bits=32)
+    if first == 0:
+        return np.asarray(sequence.random(1 << (count - 1).bit_length())[:count])
+    return np.asarray(sequence.fast_forward(first).random(count))
 
 
 def base_points(trials: int, groups: int) -> int:

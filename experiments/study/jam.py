@@ -109,7 +109,7 @@ def draw_jam(done: StudyRerun, path: Path) -> None:
             _STRIP - 16.0,
             f"Jammed: trial {done.index}, friction {mu:.3g}",
             [
-                "Shaded: the cones of friction at the contacts, atan(mu) either side of the normal.",
+                "Shaded: the cones of friction at the contacts, atan(mu) round the normal.",
                 "Arrows: the forces on the object; they balance inside the cones. Dashed: the hand",
                 f"in the target grasp, {angle:.3g} degrees and {done.now['position_error']:.3g} "
                 f"{study.case.unit} away.",

@@ -100,7 +100,7 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
             f"trial {done.index} was not closed ({done.now['outcome']}): there is nothing to film"
         )
     variant = ran.variants[int(ran.which[0])]
-    scene = filmed_scene(variant.scene, worlds_of(study, ran.values, ran.starts))
+    scene = filmed_scene(variant.scene, worlds_of(ran.values, ran.starts, ran.sizes))
     case, closings = study.case, ran.closings.closings
     errors = ran.errors
     verdicts = Verdicts(

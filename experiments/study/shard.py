@@ -76,6 +76,11 @@ class Ran:
     variants: list[Variant]
     which: IntArray
 
+    @property
+    def sizes(self) -> FloatArray:
+        """(n,) diameters of the true objects: what the engine calls 1."""
+        return np.array([variant.outline.diameter for variant in self.variants])[self.which]
+
 
 def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
     """Draw, close and judge trials (n,), given in ascending order."""
@@ -98,13 +103,11 @@ def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
         elif _collides(variant, starts[i]):
             outcome[i] = COLLISION_AT_START
     done = np.flatnonzero(outcome < 0)
-    scenes = [(v or study.variants.planned).scene for v in variants]
-    closings = close_varied(
-        scenes, which[done], starts[done], worlds_of(study, values, starts)[done]
-    )
+    known = [v or study.variants.planned for v in variants]
+    worlds = worlds_of(values, starts, np.array([v.outline.diameter for v in known])[which])
+    closings = close_varied([v.scene for v in known], which[done], starts[done], worlds[done])
     errors = np.full((len(trials), 2), np.nan)
     grasp_id = np.full(len(trials), -1, dtype=np.int64)
-    known = [v or study.variants.planned for v in variants]
     for number in np.unique(which[done]).tolist():
         here = np.flatnonzero(which[done] == number)
         rows = done[here]
@@ -132,8 +135,8 @@ def _variants(
     number: dict[Key, int] = {}
     made: list[Variant | None] = []
     which = np.empty(len(trials), dtype=np.int64)
-    for row, trial in enumerate(trials.tolist()):
-        key = study.variants.key(values, row, trial)
+    for row, shape in enumerate(study.design.shapes(trials).tolist()):
+        key = study.variants.key(values, row, shape)
         if key not in number:
             number[key] = len(made)
             made.append(study.variants.make(key))
@@ -148,11 +151,12 @@ def _collides(variant: Variant, start: FloatArray) -> bool:
     return collides(variant.outline, fingers, variant.finger_radius, COLLISION)
 
 
-def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -> Worlds:
-    """Worlds (n). The table's slope is told in the object's axes at the start, the engine's gravity
-    in the palm's: turned back by theta. Weight goes with the mass.
+def worlds_of(values: dict[str, FloatArray], starts: FloatArray, sizes: FloatArray) -> Worlds:
+    """Worlds (n) of true objects with diameters ``sizes`` (n,).
+
+    The table's slope is told in the object's axes at the start, the engine's gravity in the
+    palm's: turned back by theta. Weight goes with the mass.
     """
-    size = study.cage.outline.diameter
     pull = values["weight"] * np.sin(values["tilt"])
     direction = values["tilt_direction"] - starts[:, 2]
     return Worlds(
@@ -163,8 +167,8 @@ def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -
         gravity_y=pull * np.sin(direction),
         mass=values["mass"],
         inertia=values["inertia"],
-        com_x=values["com_x"] / size,
-        com_y=values["com_y"] / size,
+        com_x=values["com_x"] / sizes,
+        com_y=values["com_y"] / sizes,
         speed=values["speed"],
         force=values["force"],
     )
@@ -173,22 +177,33 @@ def worlds_of(study: Study, values: dict[str, FloatArray], starts: FloatArray) -
 def _judged(
     study: Study, variant: Variant, closings: ClosingOutcomes
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """Outcome (k,), grasp (k,) and errors (k, 2) of closings of one variant."""
+    """Outcome (k,), grasp (k,) and errors (k, 2) of closings of one variant.
+
+    On a variant, an end off the target is compared with the grasps of the plan nearest to it, at
+    their places there: with its own ones, so that no other trial decides what it is called.
+    """
     config, grasps = study.config, study.cage.grasps
     near = config.position_tolerance, config.angle_tolerance
     tolerances = Tolerances(*near, *near)
-    wanted = grasps
-    if not variant.planned:
-        target = study.variants.grasps(variant, grasps[:1])
-        first = judge(closings, target, variant.outline, tolerances=tolerances)
-        if not (first.outcome == UNMATCHED).any():
-            return first.outcome, first.grasp_id, _errors(first)
-        ends = closings.end[first.outcome == UNMATCHED]
-        far = [grasp_errors(ends, g, study.cage.outline)[0].min() for g in grasps[1:]]
-        wanted = (grasps[0], *(grasps[1 + k] for k in np.argsort(far)[:_NEAREST]))
-    places = study.variants.grasps(variant, wanted)
-    found = judge(closings, places, variant.outline, tolerances=tolerances)
-    return found.outcome, found.grasp_id, _errors(found)
+    if variant.planned:
+        found = judge(closings, grasps, variant.outline, tolerances=tolerances)
+        return found.outcome, found.grasp_id, _errors(found)
+    places = {0: study.variants.grasps(variant, grasps[:1])[0]}
+    found = judge(closings, [places[0]], variant.outline, tolerances=tolerances)
+    outcome, grasp_id = found.outcome.copy(), found.grasp_id.copy()
+    astray = np.flatnonzero(outcome == UNMATCHED)
+    ends = closings.end[astray]
+    seen = [grasp_errors(ends, grasp, study.cage.outline) for grasp in grasps[1:]]
+    off = np.array([np.maximum(at / near[0], turn / near[1]) for at, turn in seen])
+    for row, far in zip(astray.tolist(), off.reshape(len(seen), len(astray)).T, strict=True):
+        nearest = 1 + np.argsort(far, kind="stable")[:_NEAREST]
+        for k in nearest.tolist():
+            if k not in places:
+                places[k] = study.variants.grasps(variant, grasps[k : k + 1])[0]
+        mine = [places[k] for k in (0, *nearest.tolist())]
+        one = judge(closings.picked(np.array([row])), mine, variant.outline, tolerances=tolerances)
+        outcome[row], grasp_id[row] = one.outcome[0], one.grasp_id[0]
+    return outcome, grasp_id, _errors(found)
 
 
 def _errors(verdicts: Any) -> FloatArray:
@@ -197,14 +212,14 @@ def _errors(verdicts: Any) -> FloatArray:
 
 def table_of(study: Study, ran: Ran) -> pa.Table:
     """A row per trial. Lengths in the case's unit, angles in [rad], forces in [closing force]."""
-    count, size = len(ran.trials), study.cage.outline.diameter
+    count, sizes = len(ran.trials), ran.sizes
     closings, answers = ran.closings.closings, ran.answers
     lost = np.ones(count, dtype=np.bool_)
     lost[ran.done] = ran.outcome[ran.done] == OUTCOMES.index("diverged")
 
-    def of_closings(values: Any, scale: float = 1.0) -> pa.Array:
+    def of_closings(values: Any) -> pa.Array:
         whole = np.zeros(count, dtype=np.asarray(values).dtype)
-        whole[ran.done] = values if scale == 1.0 else np.asarray(values) * scale
+        whole[ran.done] = values
         return pa.array(whole, mask=lost)
 
     columns: dict[str, Any] = {
@@ -223,11 +238,11 @@ def table_of(study: Study, ran: Ran) -> pa.Table:
             f"end_{name}": of_closings(closings.end[:, k])
             for k, name in enumerate(("x", "y", "theta", "sigma"))
         },
-        "position_error": _known(ran.errors[:, 0] * size),
+        "position_error": _known(ran.errors[:, 0] * sizes),
         "angle_error": _known(ran.errors[:, 1]),
         "peak_force": of_closings(ran.closings.peak_force),
-        "penetration_max": of_closings(closings.penetration_max, size),
-        "penetration_rest": of_closings(closings.penetration_rest, size),
+        "penetration_max": of_closings(closings.penetration_max * sizes[ran.done]),
+        "penetration_rest": of_closings(closings.penetration_rest * sizes[ran.done]),
         "steps": of_closings(closings.steps),
     }
     return pa.table(columns)

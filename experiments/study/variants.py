@@ -64,13 +64,16 @@ class Variants:
         self.planned = self._compiled(cage.outline, cage.hand, cage.finger_radius, 0.0, True)
         self._supports: dict[int, Supports] = {}
 
-    def key(self, values: Mapping[str, FloatArray], row: int, trial: int) -> Key:
-        """What a trial's variant depends on; () for the planned one."""
+    def key(self, values: Mapping[str, FloatArray], row: int, shape: int) -> Key:
+        """What a trial's variant depends on; () for the planned one.
+
+        ``shape`` numbers the shapes of the boundary's noise.
+        """
         given = tuple(float(values[name][row]) for name in GEOMETRY)
         usual = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if given == usual:
             return ()
-        return (*given, float(trial)) if given[1] > 0.0 else given
+        return (*given, float(shape)) if given[1] > 0.0 else given
 
     def make(self, key: Key) -> Variant | None:
         """The variant of a key, None if no such object or hand exists (it would cross itself)."""
@@ -117,12 +120,12 @@ class Variants:
             return grasp
         return _Moved(grasp.id, contacts)
 
-    def _outline(self, scale: float, noise: float, trial: int) -> Outline:
+    def _outline(self, scale: float, noise: float, shape: int) -> Outline:
         planned = self._cage.outline
         centre = planned.centroid
         vertices = centre + scale * (planned.vertices - centre)
         if noise > 0.0:
-            rng = np.random.default_rng([self._config.seed, _STREAM, trial])
+            rng = np.random.default_rng([self._config.seed, _STREAM, shape])
             vertices = vertices + boundary_noise(planned.vertices, noise, rng)
         return Outline(vertices)
 
