@@ -78,9 +78,8 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         if not table.get("case"):
             raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
         case = _case(table)
-        config = study_config(table, case)
-        physical = physical_case(case)
-        study = Study(config, physical.case, physical.cage)
+        physical = physical_case(case)  # point fingers become discs; their radius bounds errors
+        study = Study(study_config(table, physical.case), physical.case, physical.cage)
     document = study_document(study)
     if old is not None:
         lines = differences(old, document)
