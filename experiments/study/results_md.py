@@ -44,7 +44,7 @@ def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     yield f"**{sentence(found, document['name'])}.**"
     yield from _closed(found)
     yield ""
-    yield from _table(
+    yield from table(
         ("outcome", "trials", ""),
         [(k.replace("_", " "), str(found["outcomes"][k]), _OUTCOMES[k]) for k in _OUTCOMES
          if found["outcomes"][k]],
@@ -71,13 +71,13 @@ def _closed(found: Mapping[str, Any]) -> Iterator[str]:
     if closed and closed < trials:
         low, high = found["target_rate_of_closed_95"]
         yield (
-            f"Of the {closed} that were closed at all, {_percent(found['target_rate_of_closed'])} "
-            f"did (95 %: {_percent(low)} to {_percent(high)})."
+            f"Of the {closed} that were closed at all, {percent(found['target_rate_of_closed'])} "
+            f"did (95 %: {percent(low)} to {percent(high)})."
         )
     if trials and not found["failed"]:
         yield (
             f"None of {trials} failed, so at 95 % the rate of failures is below "
-            f"{_percent(wilson_upper(0, trials))}."
+            f"{percent(wilson_upper(0, trials))}."
         )
 
 
@@ -85,7 +85,7 @@ def _verdicts(found: Mapping[str, Any]) -> Iterator[str]:
     yield ""
     yield "What the planner says of the starts (planned object and hand), and what became of them:"
     yield ""
-    yield from _table(
+    yield from table(
         ("verdict", "in the target's cage", "trials", "target", "other grasp", "escaped"),
         [
             (
@@ -101,13 +101,13 @@ def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
     yield ""
     yield f"## {name}: {VARIABLES[name].help}"
     yield ""
-    yield from _table(
+    yield from table(
         (f"{name} [{_shown_unit(name, unit)}]", "trials", "target", "rate", "95 %"),
         [
             (
                 _range(name, bin_), str(bin_["trials"]), str(bin_["target"]),
-                _percent(bin_["target"] / bin_["trials"]),
-                f"{_percent(bin_['rate_95'][0])} to {_percent(bin_['rate_95'][1])}",
+                percent(bin_["target"] / bin_["trials"]),
+                f"{percent(bin_['rate_95'][0])} to {percent(bin_['rate_95'][1])}",
             )
             for bin_ in one["bins"]
         ],
@@ -129,7 +129,7 @@ def _indices(found: Mapping[str, Any]) -> Iterator[str]:
         "variance that an input explains alone (first order), and with all others (total)."
     )
     yield ""
-    yield from _table(
+    yield from table(
         ("input", "first order", "95 %", "total", "95 %"),
         [
             (
@@ -223,7 +223,7 @@ def _range(name: str, bin_: Mapping[str, Any]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _percent(rate: float) -> str:
+def percent(rate: float) -> str:
     """Percents with as many digits as tell a rate near 1 from 1."""
     return f"{100.0 * rate:.4g} %"
 
@@ -234,7 +234,8 @@ def _number(value: float | None, over: float = 1.0) -> str:
     )
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Lines of a Markdown table."""
     yield f"| {' | '.join(head)} |"
     yield f"|{'---|' * len(head)}"
     for row in rows:
