@@ -13,7 +13,13 @@ from experiments.disc_case import physical_case
 from experiments.inputs import case_file
 from experiments.options import check_folder
 from experiments.progress import stage_bar
-from experiments.study.config import ConfigError, StudyConfig, read_toml, study_config
+from experiments.study.config import (
+    ConfigError,
+    StudyConfig,
+    check_fingers,
+    read_toml,
+    study_config,
+)
 from experiments.study.document import differences, fingerprint, study_document, study_of
 from experiments.study.folder import (
     JSON,
@@ -75,6 +81,7 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         case = _case(table)
         config = study_config(table, case)
         physical = physical_case(case)
+        check_fingers(config, physical.case)
         study = Study(config, physical.case, physical.cage)
     document = study_document(study)
     if old is not None:
