@@ -86,12 +86,18 @@ def has_rest(cage: Cage) -> bool:
     return cage.sigma_first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
 
 
+def same_set(cage: Cage, which: StartSet) -> StartSet:
+    """The whole cage is its guaranteed set if it has no rest."""
+    return "guaranteed" if which == "cage" and not has_rest(cage) else which
+
+
 def draw_starts(
     cage: Cage,
     which: StartSet,
     count: int,
     rng: np.random.Generator,
     progress: Callable[[int], None] | None = None,
+    box: Box | None = None,
 ) -> Starts:
     """Draw ``count`` placements from one set of a cage.
 
@@ -99,6 +105,8 @@ def draw_starts(
     ----------
     progress:
         Called with the number of placements found since the last call.
+    box:
+        ``Box.around`` this set of this cage, for whoever draws from it many times.
 
     Raises
     ------
@@ -106,11 +114,10 @@ def draw_starts(
         The set is empty, or ``TRIES_PER_START`` hands a start were not enough; says how many were
         found in how many tries.
     """
-    if which == "cage" and not has_rest(cage):
-        which = "guaranteed"
+    which = same_set(cage, which)
     if cage.verdict == "not_a_cage" or (which == "rest" and not has_rest(cage)):
         raise SamplingError(f"this cage has no {which} set of placements")
-    box = _Box.around(cage, which)
+    box = Box.around(cage, which) if box is None else box
     found: list[FloatArray] = []
     have, tried, limit = 0, 0, TRIES_PER_START * count
     while have < count and tried < limit:
@@ -133,7 +140,7 @@ def draw_starts(
 
 
 @dataclass(frozen=True, slots=True)
-class _Box:
+class Box:
     """Two fingers in their regions, the third in the bounds of its own, sigma in [floor, top)."""
 
     z: NDArray[np.complex128]
@@ -144,8 +151,9 @@ class _Box:
     top: float
 
     @classmethod
-    def around(cls, cage: Cage, which: StartSet) -> _Box:
+    def around(cls, cage: Cage, which: StartSet) -> Box:
         """A box that holds the set: a placement of it has each finger in the finger's region."""
+        which = same_set(cage, which)
         if which == "guaranteed":
             top = safe_level(cage.sigma_first, cage.sigma_0)
             level, floor = (None if np.isinf(top) else top), cage.sigma_0

@@ -27,6 +27,10 @@ def add_parser(subparsers: Any) -> None:
         "file with the same fields: icage study study.toml --out DIR.",
     )
     parser.add_argument("case", metavar="CASE", type=file_name, nargs="?", help=HELP["case"])
+    parser.add_argument(
+        "--case", metavar="CASE", dest="instead", type=file_name,
+        help="instead of the case that a TOML file names",
+    )  # fmt: skip
     parser.add_argument("--out", metavar="DIR", type=file_name, help="folder for all results")
     parser.add_argument(
         "--vary", metavar="NAME=DIST", action="append", default=[], help=HELP["vary"]
@@ -97,6 +101,8 @@ def _given(args: argparse.Namespace) -> dict[str, Any]:
         value = getattr(args, name)
         if value is not None:
             given[name] = value
+    if args.instead is not None:
+        given["instead"] = args.instead
     vary: dict[str, str] = {}
     for text in args.vary:
         name, equals, value = text.partition("=")

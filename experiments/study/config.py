@@ -159,8 +159,7 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     if given.get("nominal") is not None and given["starts"] != "nominal":
         raise ConfigError(f"nominal is given, but starts = {given['starts']!r}")
     config = StudyConfig(vary=vary, **given)
-    if case.finger_radius > 0.0:
-        check_fingers(config, case)
+    _check_fingers(config, case)
     noise = config.distribution("outline_noise").high
     if noise > 0.05 * case.outline.diameter:
         raise ConfigError(
@@ -170,14 +169,8 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     return config
 
 
-def check_fingers(config: StudyConfig, case: Case) -> None:
-    """Errors of their radius must leave discs; for point fingers, once they have become discs.
-
-    Raises
-    ------
-    ConfigError:
-        They do not.
-    """
+def _check_fingers(config: StudyConfig, case: Case) -> None:
+    """Errors of their radius must leave discs."""
     radius, thinnest = case.finger_radius, THINNEST * case.outline.diameter
     least = radius + config.distribution("finger_radius").low
     if "finger_radius" in config.vary and not least >= thinnest:

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from experiments.starts import draw_starts
+from experiments.starts import Box, StartSet, draw_starts
 from experiments.study.config import StudyConfig
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
@@ -39,6 +39,7 @@ class Intended:
         self._config, self._cage = config, cage
         self._lock = threading.Lock()
         self._blocks: dict[tuple[int, int], FloatArray] = {}
+        self._box: Box | None = None
         self.nominal: FloatArray | None = None
         if config.starts == "nominal":
             given = config.nominal
@@ -68,10 +69,12 @@ class Intended:
         key = (stream, block)
         if key not in self._blocks:
             rng = np.random.default_rng([self._config.seed, _STREAM, stream, block])
-            which = "cage" if self._config.starts == "cage" else "guaranteed"
+            which: StartSet = "cage" if self._config.starts == "cage" else "guaranteed"
+            if self._box is None:
+                self._box = Box.around(self._cage, which)
             while len(self._blocks) >= 64:  # shards come in order: the oldest is not asked again
                 del self._blocks[next(iter(self._blocks))]
-            self._blocks[key] = draw_starts(self._cage, which, BLOCK, rng).placements
+            self._blocks[key] = draw_starts(self._cage, which, BLOCK, rng, box=self._box).placements
         return self._blocks[key]
 
 

@@ -13,13 +13,7 @@ from experiments.disc_case import physical_case
 from experiments.inputs import case_file
 from experiments.options import check_folder
 from experiments.progress import stage_bar
-from experiments.study.config import (
-    ConfigError,
-    StudyConfig,
-    check_fingers,
-    read_toml,
-    study_config,
-)
+from experiments.study.config import ConfigError, StudyConfig, read_toml, study_config
 from experiments.study.document import differences, fingerprint, study_document, study_of
 from experiments.study.folder import (
     JSON,
@@ -62,8 +56,13 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         raise ConfigError("--out DIR is needed")
     path = Path(out)
     table = dict(given)
+    instead = table.pop("instead", None)
     if "case" in table and table["case"].lower().endswith(".toml"):
         table = _with_file(Path(table.pop("case")), table)
+        if instead is not None:
+            table["case"] = instead
+    elif instead is not None:
+        raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
     check_folder("--out", path, (JSON, TRIALS, PAGE))
     old = read_document(path)
     if old is not None and not resume:
@@ -80,10 +79,8 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         if not table.get("case"):
             raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
         case = _case(table)
-        config = study_config(table, case)
-        physical = physical_case(case)
-        check_fingers(config, physical.case)
-        study = Study(config, physical.case, physical.cage)
+        physical = physical_case(case)  # point fingers become discs; their radius bounds errors
+        study = Study(study_config(table, physical.case), physical.case, physical.cage)
     document = study_document(study)
     if old is not None:
         lines = differences(old, document)

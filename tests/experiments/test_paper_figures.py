@@ -56,7 +56,6 @@ def test_a_figure_of_the_golden_case(name: str, tmp_path: Path, capsys: Any):
         (GOLDEN, "svg"),
         (T, "svg"),
         (str(CASES / "disc_Y.json"), "svg"),
-        ("pliers", "svg"),
     ],
 )
 def test_all_figures_of_a_case(case: str, kind: str, tmp_path: Path, capsys: Any):

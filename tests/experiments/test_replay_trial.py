@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from experiments import video
+from experiments import clips, video
 from experiments.recorded import RecordingError, read_trial, rerun
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
@@ -120,6 +120,8 @@ def test_what_is_no_replay_is_an_input_error(folder: Path, tmp_path: Path, capsy
 @pytest.mark.slow
 def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video, "find_backend", lambda: None)
+    for module in (clips, video):
+        monkeypatch.setattr(module, "FPS", 10)
     film = tmp_path / "trial.mp4"
     result = here(capsys, "replay-trial", str(folder), "2", "--video", str(film))
     assert result.code == 0, result

@@ -113,25 +113,21 @@ def test_the_way_out_works_above_sigma_max_and_not_below():
     assert run.penetration_max.max() < 1e-3
 
 
-def led_in_vain(retries: int) -> list[np.ndarray]:
-    """Wrench and motor of every step in which an object that nothing moves is led, till it is held.
-
-    The first of the two has passed a third of the time to get stuck when the second begins.
-    """
+def led_in_vain(retries: int) -> np.ndarray:
+    """(steps, 4) wrench and motor while an object that nothing moves is led, till it is held."""
     scene, cage = t_cage()
     assert cage.escape_path is not None
-    path, openings = object_path(scene, cage.escape_path), np.full(2, 1.1 * cage.sigma_0)
-    pull = GuidedPull(retries=retries)
-    driver = GuidedDriver(scene, openings / scene.thing.unit, path, np.random.default_rng(0), pull)
-    qpos, wrench, motor = targets(2), np.zeros((2, 3)), np.zeros(2)
+    path = object_path(scene, cage.escape_path)
+    openings = np.array([1.1 * cage.sigma_0 / scene.thing.unit])
+    rng, pull = np.random.default_rng(0), GuidedPull(retries=retries)
+    driver = GuidedDriver(scene, openings, path, rng, pull)
+    one, wrench, motor = np.arange(1), np.zeros((1, 3)), np.zeros(1)
     seen: list[np.ndarray] = []
     for step in range(driver.max_steps):
-        first = step < 200
-        given_up = driver.drive(np.arange(1 if first else 2), step, qpos, wrench, motor)
-        seen.append(np.column_stack([wrench, motor]))
+        given_up = driver.drive(one, step, targets(1), wrench, motor)
+        seen.append(np.append(wrench[0], motor))
         if len(given_up):
-            assert not first
-            return seen
+            return np.array(seen)
     raise AssertionError("never held")
 
 
@@ -141,7 +137,7 @@ def test_what_is_stuck_comes_again_before_it_is_held():
     assert patience < len(once) < 2.0 * patience
     assert 3.0 * patience < len(thrice) < 6.0 * patience
     assert np.array_equal(once, thrice[: len(once)])  # till then it is the same attack
-    assert np.hypot(*np.array(thrice)[:, 0, :2].T).max() < 300.0 * (0.5 + 0.1 * np.sqrt(2.0))
+    assert np.hypot(thrice[:, 0], thrice[:, 1]).max() < 300.0 * (0.5 + 0.1 * np.sqrt(2.0))
 
 
 def threshold(openings: np.ndarray, _rng: np.random.Generator) -> Attacks:
