@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -12,18 +13,33 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from experiments.cli import parser
+from experiments.commands.study import _given
+from experiments.disc_case import PhysicalCase, physical_case
 from experiments.study.config import FIELDS, ConfigError, StudyConfig, read_toml, study_config
 from experiments.study.distributions import Distribution, DistributionError, parse_distribution
 from experiments.study.fields import HELP
 from experiments.study.session import command_line, session_of
 from experiments.study.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
 from icage.errors import InputError
+from icage.formats.case_json import Case
 from models import CASES
 from tests.cli.runner import here
-from tests.experiments.small import t_case, write_case
+from tests.experiments.small import cage_of, t_case, write_case
 
 CASE = t_case()
 SIZE = CASE.outline.diameter
+
+
+@pytest.fixture(autouse=True)
+def planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The T is planned for all these tests together: they stop before anything is closed."""
+
+    def known(case: Case) -> PhysicalCase:
+        same = case.name == "T" and case.finger_radius == CASE.finger_radius
+        return PhysicalCase.of(case, cage_of("T")) if same else physical_case(case)
+
+    monkeypatch.setattr("experiments.study.session.physical_case", known)
 
 
 def config(**table: Any) -> StudyConfig:
@@ -217,11 +233,6 @@ def test_what_is_written_down_is_read_again(one: Distribution):
 def test_the_printed_command_runs_the_same_study(
     options: list[str], expected: list[str], tmp_path: Path
 ):
-    import shlex
-
-    from experiments.cli import parser
-    from experiments.commands.study import _given
-
     case = write_case(CASE, tmp_path / "t.json")
 
     def session(words: list[str]) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import InputError
@@ -187,8 +188,6 @@ def test_mean_distance_of_a_square_a_rectangle_and_a_disc():
 
 @pytest.mark.parametrize("grasp", [l_shape(), shipped("pliers")], ids=["L", "pliers"])
 def test_mean_distance_of_a_shape_whose_edges_face_the_middle(grasp: KnownGrasp):
-    import shapely
-
     thing = scene_of(grasp).thing
     rng = np.random.default_rng(9)
     low, high = thing.vertices.min(axis=0), thing.vertices.max(axis=0)
