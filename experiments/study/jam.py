@@ -48,9 +48,9 @@ class Press:
 
 def presses(done: StudyRerun) -> list[Press]:
     """Contacts of a trial at its end."""
-    study, ran = done.study, done.ran
+    ran = done.ran
     variant = ran.variants[int(ran.which[0])]
-    scene = filmed_scene(variant.scene, worlds_of(study, ran.values, ran.starts))
+    scene = filmed_scene(variant.scene, worlds_of(ran.values, ran.starts, ran.sizes))
     qpos = scene.start_positions(ran.closings.closings.end)[0]
     data = data_at(scene, qpos)
     mj.mj_forward(scene.model, data)

@@ -82,7 +82,7 @@ class Ran:
         return np.array([variant.outline.diameter for variant in self.variants])[self.which]
 
 
-def run_trials(study: Study, trials: IntArray, threads: int = 1) -> Ran:
+def run_trials(study: Study, trials: IntArray) -> Ran:
     """Draw, close and judge trials (n,), given in ascending order."""
     config, cage, design = study.config, study.cage, study.design
     values = design.values(trials)

@@ -129,7 +129,7 @@ def sentence(found: dict[str, Any], what: str) -> str:
     low, high = found["target_rate_95"]
     reached = found["outcomes"]["target"]
     return (
-        f"{reached} of {found['trials']} closings of {what} ended in the target grasp: "
+        f"{reached} of {found['trials']} trials of {what} ended in the target grasp: "
         f"{100.0 * found['target_rate']:.4g} % (95 %: {100.0 * low:.4g} to {100.0 * high:.4g} %)"
     )
 
