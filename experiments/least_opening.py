@@ -18,6 +18,9 @@ from icage.outline import Outline
 FEASIBLE: Final = 1e-6
 """[diameter] Constraints may be missed by this; the planner has the last word."""
 
+_ASIDE: Final = 1e-6
+"""[1] A hand that comes nearer to an edge by no more than this share of its way moves along it."""
+
 _AT_MINIMUM: Final = (0, 8)
 """SLSQP has converged, or can go no lower for rounding."""
 
@@ -50,8 +53,7 @@ def least_opening(
     """
     size, middle = outline.diameter, near.mean(axis=0)
     a = outline.vertices
-    side = np.roll(a, -1, axis=0) - a
-    out = np.column_stack([side[:, 1], -side[:, 0]]) / np.hypot(*side.T)[:, None]
+    out, _ = _normals(outline)
     x, y = out[edge].T
     z = hand.z[finger]
     matrix = np.column_stack([x, y, x * z.real + y * z.imag, y * z.real - x * z.imag])
@@ -72,3 +74,40 @@ def least_opening(
     x, y, u, v = found.x.tolist()
     places = (complex(x, y) + complex(u, v) * hand.z) * size
     return np.column_stack([places.real, places.imag]) + middle
+
+
+def sliding_room(
+    outline: Outline, finger: IntArray, edge: IntArray, contacts: FloatArray, radius: float
+) -> tuple[FloatArray, FloatArray] | None:
+    """Finger centres (3, 2) at both ends of the way a hand of least opening may be shifted, or None.
+
+    A hand that fits loosely has one: its fingers press on opposite edges, and it slides along them
+    until another of its edges stops it, or a finger comes to the end of its own.
+    """
+    size, at = outline.diameter, contacts[finger] - outline.vertices[edge]
+    out, length = _normals(outline)
+    n = out[edge]
+    slack = np.maximum((n * at).sum(axis=1) - radius, 0.0)
+    pressed = slack <= FEASIBLE * size
+    along = np.column_stack([-n[:, 1], n[:, 0]])
+    foot = (along * at).sum(axis=1)[pressed]
+    walls = np.vstack([n, along[pressed], -along[pressed]])
+    rooms = np.concatenate([np.where(pressed, 0.0, slack), foot, length[edge][pressed] - foot])
+
+    def far(way: FloatArray) -> float:
+        pace = -walls @ way
+        stops = pace > _ASIDE
+        return max(float((rooms[stops] / pace[stops]).min(initial=np.inf)), 0.0)
+
+    way = max(along[pressed], key=lambda way: far(way) + far(-way))
+    ahead, behind = far(way), far(-way)
+    if not FEASIBLE * size < ahead + behind < np.inf:
+        return None
+    return contacts + ahead * way, contacts - behind * way
+
+
+def _normals(outline: Outline) -> tuple[FloatArray, FloatArray]:
+    """Outward unit normals (n, 2) and lengths (n,) of the edges."""
+    side = np.roll(outline.vertices, -1, axis=0) - outline.vertices
+    length = np.hypot(*side.T)
+    return np.column_stack([side[:, 1], -side[:, 0]]) / length[:, None], length

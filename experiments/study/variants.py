@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from experiments.least_opening import NoOpeningError, least_opening
+from experiments.least_opening import NoOpeningError, least_opening, sliding_room
 from experiments.study.config import StudyConfig
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum
@@ -49,7 +49,10 @@ class Variant:
 
 @dataclass(frozen=True, slots=True)
 class _Moved:
-    """A grasp of the plan at its place on a variant; what the judge reads."""
+    """A grasp of the plan at its place on a variant; what the judge reads.
+
+    ``plateau``: both ends of its room, where a hand that is off holds the object loosely.
+    """
 
     id: int
     contacts: FloatArray
@@ -118,7 +121,8 @@ class Variants:
             )
         except NoOpeningError:
             return grasp
-        return _Moved(grasp.id, contacts)
+        room = sliding_room(variant.outline, held.finger, held.edge, contacts, radius)
+        return _Moved(grasp.id, contacts, room)
 
     def _outline(self, scale: float, noise: float, shape: int) -> Outline:
         planned = self._cage.outline
