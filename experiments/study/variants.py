@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from experiments.least_opening import NoOpeningError, least_opening, sliding_room
+from experiments.least_opening import NoOpeningError, followed_opening, sliding_room
 from experiments.study.config import StudyConfig
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum
@@ -116,12 +116,12 @@ class Variants:
             return grasp
         radius = variant.finger_radius
         try:
-            contacts = least_opening(
+            contacts, finger, edge = followed_opening(
                 variant.outline, variant.hand, held.finger, held.edge, grasp.contacts, radius
             )
         except NoOpeningError:
             return grasp
-        room = sliding_room(variant.outline, held.finger, held.edge, contacts, radius)
+        room = sliding_room(variant.outline, finger, edge, contacts, radius)
         return _Moved(grasp.id, contacts, room)
 
     def _outline(self, scale: float, noise: float, shape: int) -> Outline:
