@@ -1,4 +1,4 @@
-"""The tables of docs/studies.md from the committed results: ``python -m experiments.studies.tables``.
+"""The tables of docs/studies.md, from the committed results.
 
 python -m experiments.studies.tables [DIR]
 """

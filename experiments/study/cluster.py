@@ -7,8 +7,14 @@ tables back. A shard is pure: one that died with its worker is simply run again 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+import logging
+import re
+import socket
+from collections.abc import Generator, Iterator, Mapping
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
 from functools import lru_cache
+from itertools import islice
 from typing import Any, Final
 
 import pyarrow as pa
@@ -25,8 +31,14 @@ RETRIES: Final = 5
 AHEAD: Final = 4
 """[shard] Handed out per thread of the cluster before any is back."""
 
-_WAIT: Final = "30s"
-"""For the scheduler, and for its first worker."""
+_SCHEDULER_WAIT: Final = 10
+"""[s] For the scheduler to answer."""
+
+_WORKER_WAIT: Final = 30
+"""[s] For the first worker."""
+
+_ADDRESS: Final = re.compile(r"(?:\w+://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):(\d{1,5})")
+_LOGS: Final = ("distributed", "distributed.client", "tornado.application")
 
 
 class ClusterError(InputError):
@@ -47,50 +59,107 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     except ImportError as error:
         raise ClusterError("--scheduler needs dask.distributed; install icage[cluster]") from error
     text = json.dumps(document, sort_keys=True)
+    with _connected(distributed, address):  # before anything is written
+        pass
 
-    def backend(study: Study, spans: list[Span]) -> Iterator[tuple[Span, pa.Table]]:
+    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
         if not spans:
             return
-        try:
-            client = distributed.Client(address, timeout=_WAIT, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
-            raise ClusterError(f"--scheduler {address!r} does not answer: {error}") from error
-        with client:
-            _check_workers(client, address)
+        with _connected(distributed, address) as client:
             yield from _results(client, distributed, text, spans)
 
     return backend
 
 
+@contextmanager
+def _connected(distributed: Any, address: str) -> Iterator[Any]:
+    """A client whose workers were checked. What dask would log reaches the user as our errors."""
+    _check_address(address)
+    with _quiet():
+        try:
+            client = _client(distributed, address)
+        except Exception as error:  # whatever the other side says if it is no scheduler
+            raise ClusterError(f"--scheduler {address!r} does not answer: {error}") from error
+        with client:
+            _check_workers(client, address)
+            yield client
+
+
+def _check_address(address: str) -> None:
+    """Somebody listens there; dask itself tries a dead address for long."""
+    parts = _ADDRESS.fullmatch(address)
+    if parts is None or int(parts[2]) > 65535:
+        raise ClusterError(f"--scheduler {address!r}; tcp://HOST:PORT is needed")
+    try:
+        socket.create_connection((parts[1].strip("[]"), int(parts[2])), _SCHEDULER_WAIT).close()
+    except (OSError, UnicodeError) as error:
+        raise ClusterError(f"--scheduler {address!r} does not answer: {error}") from error
+
+
+def _client(distributed: Any, address: str) -> Any:
+    """A client that, where it could not connect, is gone without a wait and without a word."""
+
+    class Client(distributed.Client):
+        def __del__(self) -> None:
+            with suppress(Exception):
+                self.close(timeout=1)
+
+    return Client(address, timeout=_SCHEDULER_WAIT, set_as_default=False)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    logs = [logging.getLogger(name) for name in _LOGS]
+    before = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for log, level in zip(logs, before, strict=True):
+            log.setLevel(level)
+
+
 def _results(
     client: Any, distributed: Any, text: str, spans: list[Span]
 ) -> Iterator[tuple[Span, pa.Table]]:
-    """Tables as they come, a few shards ahead of the cluster's threads."""
+    """Tables as they come, a few shards ahead of the cluster's threads, which come and go.
+
+    Raises
+    ------
+    ClusterError:
+        The scheduler is lost, or a shard killed every worker that it was given to.
+    """
     waiting = iter(spans)
-    threads = sum(client.nthreads().values())
-    pool = distributed.as_completed()
+    pool = distributed.as_completed(loop=client.loop)
     named: dict[Any, Span] = {}
-    for span in waiting:
-        _hand_out(client, pool, named, text, span)
-        if len(named) >= AHEAD * threads:
-            break
+
+    def hand_out() -> None:
+        room = AHEAD * max(1, sum(client.nthreads().values())) - len(named)
+        for span in islice(waiting, max(room, 0)):
+            future = client.submit(run_remote, text, span, pure=False, retries=RETRIES)
+            named[future] = span
+            pool.add(future)
+
     try:
+        hand_out()
         for future in pool:
             span = named.pop(future)
-            table = future.result()
+            try:
+                table = future.result()
+            except distributed.KilledWorker as error:
+                raise ClusterError(
+                    f"workers died while they ran trials {span[0]} to {span[1]}, "
+                    f"{error.allowed_failures + 1} of them; what is done is kept"
+                ) from error
             future.release()
             yield span, table
-            for more in waiting:
-                _hand_out(client, pool, named, text, more)
-                break
+            hand_out()
+    except (CancelledError, OSError) as error:
+        raise ClusterError(f"the scheduler was lost; what is done is kept: {error}") from error
     finally:
-        client.cancel(list(named))
-
-
-def _hand_out(client: Any, pool: Any, named: dict[Any, Span], text: str, span: Span) -> None:
-    future = client.submit(run_remote, text, span, pure=False, retries=RETRIES)
-    named[future] = span
-    pool.add(future)
+        with suppress(Exception):  # it may be gone
+            client.cancel(list(named))
 
 
 def run_remote(text: str, span: Span) -> pa.Table:
@@ -100,17 +169,37 @@ def run_remote(text: str, span: Span) -> pa.Table:
 
 @lru_cache(maxsize=4)
 def _study(text: str) -> Study:
-    return study_of(json.loads(text))
+    """The study, on a worker with the versions that it is recorded with.
+
+    Raises
+    ------
+    ClusterError:
+        It has others: it came after the check.
+    """
+    document = json.loads(text)
+    lines = _others(versions(), document["versions"])
+    if lines:
+        raise ClusterError(f"a worker has {', '.join(lines)}")
+    return study_of(document)
 
 
 def _check_workers(client: Any, address: str) -> None:
     """Every worker must compute what this machine would."""
     try:
-        client.wait_for_workers(1, timeout=_WAIT)
+        client.wait_for_workers(1, timeout=_WORKER_WAIT)
     except TimeoutError as error:
         raise ClusterError(f"--scheduler {address!r} has no workers") from error
-    here = versions()
-    for worker, there in client.run(versions).items():
-        other = [f"{n} {there.get(n)} instead of {v}" for n, v in here.items() if there.get(n) != v]
-        if other:
-            raise ClusterError(f"worker {worker} has {', '.join(other)}")
+    for worker, there in client.run(versions, on_error="return").items():
+        if not isinstance(there, dict):
+            raise ClusterError(f"worker {worker} cannot run icage: {there!r}")
+        lines = _others(there, versions())
+        if lines:
+            raise ClusterError(f"worker {worker} has {', '.join(lines)}")
+
+
+def _others(there: Mapping[str, str], wanted: Mapping[str, str]) -> list[str]:
+    return [
+        f"{name} {there.get(name)} instead of {value}"
+        for name, value in wanted.items()
+        if there.get(name) != value
+    ]

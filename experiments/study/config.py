@@ -99,6 +99,7 @@ class StudyConfig:
     def document(self) -> dict[str, Any]:
         """As kept in ``study.json``: lengths in the case's unit, angles in [rad]."""
         plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "vary"}
+        plain["nominal"] = None if self.nominal is None else list(self.nominal)
         vary = {
             name: {"kind": d.kind, "parameters": list(d.parameters)}
             for name, d in self.vary.items()

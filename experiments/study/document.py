@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from experiments.study.config import StudyConfig
@@ -51,8 +51,7 @@ def study_of(document: Mapping[str, Any]) -> Study:
     InputError:
         It is no study's document.
     """
-    if document.get("format") != FORMAT:
-        raise InputError(f"format {document.get('format')!r}; {FORMAT!r} is needed")
+    check_format(document)
     try:
         given = document["case"]
         case = Case(
@@ -74,6 +73,18 @@ def study_of(document: Mapping[str, Any]) -> Study:
     return Study(config, case, cage)
 
 
+def check_format(document: Mapping[str, Any]) -> None:
+    """Refuse what is no study's document.
+
+    Raises
+    ------
+    InputError:
+        It has another format.
+    """
+    if document.get("format") != FORMAT:
+        raise InputError(f"format {document.get('format')!r}; {FORMAT!r} is needed")
+
+
 def _array(rows: Any) -> Any:
     import numpy as np
 
@@ -82,29 +93,49 @@ def _array(rows: Any) -> Any:
 
 def fingerprint(document: Mapping[str, Any]) -> str:
     """What two shards of one study have in common: config, case and versions, not its length."""
-    config = {k: v for k, v in document["config"].items() if k not in _fixed(document)}
+    config = {k: v for k, v in document["config"].items() if k not in _loose(document)}
     kept = {key: document[key] for key in ("name", "unit", "case", "versions")}
     text = json.dumps({**kept, "config": config}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _fixed(document: Mapping[str, Any]) -> tuple[str, ...]:
-    """Fields that may grow; Saltelli's design hangs on the number of trials."""
-    return () if document["config"]["sampling"] == "saltelli" else (*_MAY_GROW, "case", "grasp")
+def _loose(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Fields that may differ: the case is compared itself, not by its name on the disk.
+
+    Saltelli's design hangs on the number of trials.
+    """
+    grows = () if document["config"]["sampling"] == "saltelli" else _MAY_GROW
+    return ("case", "grasp", *grows)
 
 
 def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
-    """Why a study cannot go on with another's shards, in words."""
-    lines = []
-    loose = _fixed(new)
+    """Why a study cannot go on with another's shards, in words.
+
+    Raises
+    ------
+    InputError:
+        The old one is no study's document.
+    """
+    check_format(old)
+    lines: list[str] = []
+    try:
+        lines += _differences(old, new)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"not a study's document: {error!r}") from error
+    return lines
+
+
+def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
+    loose = _loose(new)
     for key in sorted({*old["config"], *new["config"]}):
         was, now = old["config"].get(key), new["config"].get(key)
         if was != now and key not in loose:
-            lines.append(f"{key} was {was!r}, is {now!r}")
+            yield f"{key} was {was!r}, is {now!r}"
+    if old["name"] != new["name"]:
+        yield f"the case was {old['name']!r}, is {new['name']!r}"
     if old["case"] != new["case"] or old["unit"] != new["unit"]:
-        lines.append("the case is another one")
+        yield "the case is another one"
     for name in sorted({*old["versions"], *new["versions"]}):
         was, now = old["versions"].get(name), new["versions"].get(name)
         if was != now:
-            lines.append(f"{name} was {was}, is {now}")
-    return lines
+            yield f"{name} was {was}, is {now}"

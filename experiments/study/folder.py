@@ -10,25 +10,34 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from experiments.json_out import write_json
+from experiments.json_out import json_text
 from experiments.whole_files import whole_file
-from icage.errors import InputError
+from icage.errors import InputError, OutputError
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
 
 JSON, TRIALS, PAGE = "study.json", "trials.parquet", "results.md"
 SHARDS: Final = "shards"
 
 _NAME: Final = re.compile(r"trials-(\d{9})-(\d{9})\.parquet")
 _KEY: Final = b"icage-study"
+
+_PART: Final = re.compile(r"\.[a-z]+\.[0-9a-f]{8}\.(json|parquet|md|svg)")
+"""A file that was being written when its process was killed."""
 
 _LARGEST: Final = 1_000_000_000
 """[byte] Largest document read."""
@@ -41,11 +50,44 @@ class StudyFolder:
     path: Path
     fingerprint: str
 
+    @contextmanager
+    def alone(self) -> Generator[None]:
+        """Make the folder and hold it; the hold ends with the process, however that ends.
+
+        Two studies at once would take each other's shards for leftovers.
+
+        Raises
+        ------
+        InputError:
+            Another process holds it.
+        """
+        with self._writable():
+            self.path.mkdir(parents=True, exist_ok=True)
+        if fcntl is None:
+            yield
+            return
+        handle = os.open(self.path, os.O_RDONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            os.close(handle)
+            raise InputError(f"another icage study is running in {str(self.path)!r}") from error
+        except OSError:  # a file system without locks
+            pass
+        try:
+            yield
+        finally:
+            os.close(handle)
+
     def shards(self) -> dict[tuple[int, int], Path]:
         """(first, last) trial to file of every whole shard of this study; others are removed.
 
         A shard that cannot be read, is of another study or overlaps an earlier one is run again.
         """
+        with self._writable():
+            return self._shards()
+
+    def _shards(self) -> dict[tuple[int, int], Path]:
         found: dict[tuple[int, int], Path] = {}
         past = -1
         for path in sorted((self.path / SHARDS).glob("trials-*.parquet")):
@@ -60,14 +102,19 @@ class StudyFolder:
         return found
 
     def _whole(self, path: Path, span: tuple[int, int]) -> bool:
+        table = self._read(path)
+        numbers = np.arange(span[0], span[1] + 1)
+        return table is not None and np.array_equal(table["trial"].to_numpy(), numbers)
+
+    def _read(self, path: Path) -> pa.Table | None:
+        """A table of this study, every page of it as it was written; else None."""
         try:
-            about = pq.read_metadata(path)
-        except (OSError, pa.ArrowException):
-            return False
-        words = about.metadata or {}
-        return (
-            words.get(_KEY) == self.fingerprint.encode() and about.num_rows == span[1] - span[0] + 1
-        )
+            table = pq.read_table(path, page_checksum_verification=True)
+            words = table.schema.metadata or {}
+            own = words.get(_KEY) == self.fingerprint.encode() and "trial" in table.column_names
+        except (OSError, ValueError, pa.ArrowException):
+            return None
+        return table if own else None
 
     def keep(self, table: pa.Table, first: int) -> None:
         """Write a shard, whole and on the disk before it gets its name.
@@ -79,7 +126,8 @@ class StudyFolder:
         """
         last = first + table.num_rows - 1
         path = self.path / SHARDS / f"trials-{first:09d}-{last:09d}.parquet"
-        path.parent.mkdir(exist_ok=True)
+        with self._writable():
+            path.parent.mkdir(parents=True, exist_ok=True)
         self._write(table, path)
 
     def finish(self, table: pa.Table) -> None:
@@ -90,29 +138,44 @@ class StudyFolder:
     def reopen(self, table: pa.Table) -> None:
         """Make one shard of the whole table, for a study that goes on."""
         self.keep(table, 0)
-        (self.path / TRIALS).unlink()
+        with self._writable():
+            (self.path / TRIALS).unlink()
 
     def clear(self) -> None:
         """Remove the shards: they are in the table."""
-        for path in (self.path / SHARDS).glob("*trials-*"):
-            path.unlink()
+        with self._writable():
+            for path in (self.path / SHARDS).glob("*trials-*"):
+                path.unlink()
         with suppress(OSError):
             (self.path / SHARDS).rmdir()
 
+    def sweep(self) -> None:
+        """Remove what a killed process had half written."""
+        with self._writable():
+            for path in self.path.glob(".*"):
+                if _PART.fullmatch(path.name):
+                    path.unlink()
+
     def finished(self) -> pa.Table | None:
         """The whole table if it is there and of this study."""
-        path = self.path / TRIALS
+        return self._read(self.path / TRIALS)
+
+    @contextmanager
+    def _writable(self) -> Generator[None]:
         try:
-            table = pq.read_table(path)
-        except (OSError, pa.ArrowException):
-            return None
-        words = table.schema.metadata or {}
-        return table if words.get(_KEY) == self.fingerprint.encode() else None
+            yield
+        except OSError as error:
+            raise OutputError(
+                f"{str(self.path)!r} cannot be written to: {error.strerror or error}"
+            ) from error
 
     def _write(self, table: pa.Table, path: Path) -> None:
         words = {_KEY: self.fingerprint.encode()}
         with whole_file(path) as part, part.open("wb") as stream:
-            pq.write_table(table.replace_schema_metadata(words), stream, compression="zstd")
+            pq.write_table(
+                table.replace_schema_metadata(words), stream,
+                compression="zstd", write_page_checksum=True,
+            )  # fmt: skip
             stream.flush()
             os.fsync(stream.fileno())
         _sync_folder(path.parent)
@@ -169,7 +232,11 @@ def read_document(folder: Path) -> dict[str, Any] | None:
 
 def write_document(document: dict[str, Any], folder: Path) -> None:
     """Write ``study.json``, whole or not at all."""
-    write_json(document, str(folder / JSON))
+    with whole_file(folder / JSON) as part, part.open("w", encoding="utf-8") as stream:
+        stream.write(json_text(document))
+        stream.flush()
+        os.fsync(stream.fileno())
+    _sync_folder(folder)
 
 
 def _sync_folder(folder: Path) -> None:

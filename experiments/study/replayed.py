@@ -55,7 +55,7 @@ def rerun_trial(folder: Path, index: int) -> StudyRerun:
     recorded = _row(folder, index)
     ran = run_trials(study, np.array([index]))
     now: dict[str, Any] = table_of(study, ran).to_pylist()[0]
-    found = tuple((n, recorded[n], v) for n, v in now.items() if recorded.get(n) != v)
+    found = tuple((n, recorded.get(n), v) for n, v in now.items() if recorded.get(n) != v)
     return StudyRerun(index, study, ran, recorded, now, found, _versions(document))
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -24,7 +25,7 @@ Span = tuple[int, int]
 Report = Callable[[int, int], None]
 """Progress: (trials done, all)."""
 
-Backend = Callable[[Study, list[Span]], Iterator[tuple[Span, pa.Table]]]
+Backend = Callable[[Study, list[Span]], Generator[tuple[Span, pa.Table]]]
 """Runs spans and yields their tables, in any order. Closed early, it stops."""
 
 
@@ -63,13 +64,13 @@ def run_study(
     report(reached.known, total)
     if reached.stop is None:
         todo = missing(list(shards), total, size)
-        pieces = backend(study, todo)
-        for (first, _), table in pieces:
-            folder.keep(table, first)
-            reached.add(first, target_trials(table))
-            report(reached.known, total)
-            if reached.stop is not None:
-                break
+        with closing(backend(study, todo)) as pieces:
+            for (first, _), table in pieces:
+                folder.keep(table, first)
+                reached.add(first, target_trials(table))
+                report(reached.known, total)
+                if reached.stop is not None:
+                    break
     length = reached.stop or _whole(study)
     tables = [t.slice(0, max(length.at - f, 0)) for f, t in read_shards(folder.shards())]
     table = pa.concat_tables(tables).replace_schema_metadata(None)
@@ -127,7 +128,7 @@ def _check_whole(table: pa.Table, count: int) -> None:
 def on_threads(threads: int) -> Backend:
     """Shards on a pool of threads of this process; the engine and our kernels share the cores."""
 
-    def backend(study: Study, spans: list[Span]) -> Iterator[tuple[Span, pa.Table]]:
+    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
         waiting = iter(spans)
         running: dict[Future[pa.Table], Span] = {}
         pool = ThreadPoolExecutor(threads)

@@ -18,6 +18,7 @@ from experiments.study.document import differences, fingerprint, study_document,
 from experiments.study.folder import (
     JSON,
     PAGE,
+    SHARDS,
     TRIALS,
     StudyFolder,
     read_document,
@@ -64,6 +65,7 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
     elif instead is not None:
         raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
     check_folder("--out", path, (JSON, TRIALS, PAGE))
+    check_folder("--out", path / SHARDS)
     old = read_document(path)
     if old is not None and not resume:
         raise ConfigError(
@@ -118,16 +120,21 @@ def run_session(
     session: Session, threads: int | None, scheduler: str | None, figures: bool
 ) -> list[str]:
     """Run what is missing and write all results; the lines to print."""
+    backend = _backend(session, threads, scheduler)
+    with session.folder.alone():
+        return _run(session, backend, figures)
+
+
+def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     study, folder = session.study, session.folder
     total = study.design.total
     print(_announcement(study), flush=True)
-    folder.path.mkdir(parents=True, exist_ok=True)
+    folder.sweep()
     write_document({**session.document, "finished": False}, folder.path)
     with stage_bar() as bar:
         table, length = run_study(
-            study, folder, _backend(session, threads, scheduler), session.shard,
-            lambda done, whole: bar("trials", done, whole),
-        )  # fmt: skip
+            study, folder, backend, session.shard, lambda done, whole: bar("trials", done, whole)
+        )
     found = summary(study.config, study.design, table)
     stopped = {"early": length.early, "at": length.at, "why": length.why}
     document = {**session.document, "finished": True, "stopped": stopped, "found": found}
@@ -158,10 +165,18 @@ def _announcement(study: Study) -> str:
 
 def _backend(session: Session, threads: int | None, scheduler: str | None) -> Backend:
     if scheduler is None:
-        return on_threads(threads or len(os.sched_getaffinity(0)))
+        return on_threads(threads or cores())
     from experiments.study.cluster import on_cluster
 
     return on_cluster(scheduler, session.document)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # macOS, Windows
+        return os.cpu_count() or 1
 
 
 def _write_page(document: dict[str, Any], folder: Path) -> None:
