@@ -105,8 +105,8 @@ def rows() -> FloatArray:
 
 def test_frictionless_guaranteed_starts_all_reach_the_target():
     for name in ("T", "L"):
-        ran = run(60, name)
-        assert outcomes(ran) == ["target"] * 60
+        ran = run(30, name)
+        assert outcomes(ran) == ["target"] * 30
         assert ran.errors[:, 0].max() <= 1e-4
         assert ran.errors[:, 1].max() <= 1e-3
         assert (ran.answers.verdict == TARGET).all()
@@ -283,17 +283,17 @@ def noisy_plans(one: Study, ran: Ran) -> Iterator[tuple[Any, FloatArray]]:
 def test_the_target_of_a_noisy_object_is_that_of_its_own_plan(name: str):
     """The planner knows nothing of the edges that the study keeps to."""
     one = study(name, vary={"outline_noise": "1%"})
-    ran = run_trials(one, np.arange(8))
+    ran = run_trials(one, np.arange(5))
     assert set(outcomes(ran)) <= {"target", "collision"}
-    assert len(ran.variants) == 8
+    assert len(ran.variants) == 5
     moves = [
         np.abs(contacts - one.cage.grasps[0].contacts).max()
         for _, contacts in noisy_plans(one, ran)
     ]
-    assert len(moves) >= 6
+    assert len(moves) >= 4
     assert min(moves) > 1e-3 * case_of(name).outline.diameter
     assert ran.errors[ran.done].max() <= 1e-4
-    assert len(ran.done) >= 4
+    assert len(ran.done) >= 3
 
 
 @pytest.mark.slow
@@ -488,18 +488,17 @@ SHAPES = {
 
 
 @pytest.mark.parametrize(
-    ("vary", "sampling"),
+    ("vary", "sampling", "count"),
     [
-        (MUCH, "random"),
-        ({**MUCH, **SHAPES}, "sobol"),
-        ({"outline_scale": "grid:1,1.01", "friction": "0:0.8"}, "random"),
-        ({"outline_noise": "1%", "friction": "0:0.4"}, "saltelli"),
+        (MUCH, "random", 25),
+        ({**MUCH, **SHAPES}, "sobol", 14),
+        ({"outline_scale": "grid:1,1.01", "friction": "0:0.8"}, "random", 14),
+        ({"outline_noise": "1%", "friction": "0:0.4"}, "saltelli", 15),
     ],
     ids=["worlds", "shapes", "one other shape", "saltelli"],
 )
-def test_a_row_is_the_same_alone_and_in_company(vary: dict[str, str], sampling: str):
-    one = study(vary=vary, sampling=sampling, starts="cage", max_time=2.0)
-    count = 30
+def test_a_row_is_the_same_alone_and_in_company(vary: dict[str, str], sampling: str, count: int):
+    one = study(vary=vary, sampling=sampling, starts="cage", max_time=1.5)
     whole = table_of(one, run_trials(one, np.arange(count)))
     assert whole.num_rows == count
     assert len(set(whole["outcome"].to_pylist())) > 1
