@@ -1,7 +1,8 @@
 """Objects and hands that are not what was planned: outline, finger radius, shape of the hand, play.
 
 A variant is compiled once; what a trial calls the target is then the planned grasp moved with the
-edges it rests on: the least opening of the true hand between the same edges of the true object.
+edges it rests on: the least opening of the true hand between the same edges of the true object, or
+those that its fingers roll on to.
 """
 
 from __future__ import annotations
