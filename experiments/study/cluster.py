@@ -37,7 +37,7 @@ _SCHEDULER_WAIT: Final = 10
 _WORKER_WAIT: Final = 30
 """[s] For the first worker."""
 
-_ADDRESS: Final = re.compile(r"(?:\w+://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):(\d{1,5})")
+_ADDRESS: Final = re.compile(r"(\w+://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):(\d{1,5})")
 _LOGS: Final = ("distributed", "distributed.client", "tornado.application")
 
 
@@ -59,20 +59,21 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     except ImportError as error:
         raise ClusterError("--scheduler needs dask.distributed; install icage[cluster]") from error
     text = json.dumps(document, sort_keys=True)
-    with _connected(distributed, address):  # before anything is written
+    wanted = document["versions"]
+    with _connected(distributed, address, wanted):  # before anything is written
         pass
 
     def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
         if not spans:
             return
-        with _connected(distributed, address) as client:
+        with _connected(distributed, address, wanted) as client:
             yield from _results(client, distributed, text, spans)
 
     return backend
 
 
 @contextmanager
-def _connected(distributed: Any, address: str) -> Iterator[Any]:
+def _connected(distributed: Any, address: str, wanted: Mapping[str, str]) -> Iterator[Any]:
     """A client whose workers were checked. What dask would log reaches the user as our errors."""
     _check_address(address)
     with _quiet():
@@ -81,17 +82,20 @@ def _connected(distributed: Any, address: str) -> Iterator[Any]:
         except Exception as error:  # whatever the other side says if it is no scheduler
             raise ClusterError(f"--scheduler {address!r} does not answer: {error}") from error
         with client:
-            _check_workers(client, address)
+            _check_workers(client, address, wanted)
             yield client
 
 
 def _check_address(address: str) -> None:
-    """Somebody listens there; dask itself tries a dead address for long."""
+    """A scheduler listens there: dask would try a dead address for long, a mute one for ever."""
     parts = _ADDRESS.fullmatch(address)
-    if parts is None or int(parts[2]) > 65535:
+    if parts is None or int(parts[3]) > 65535:
         raise ClusterError(f"--scheduler {address!r}; tcp://HOST:PORT is needed")
     try:
-        socket.create_connection((parts[1].strip("[]"), int(parts[2])), _SCHEDULER_WAIT).close()
+        place = (parts[2].strip("[]"), int(parts[3]))
+        with socket.create_connection(place, _SCHEDULER_WAIT) as connection:
+            if parts[1] in (None, "tcp://"):  # the others let the client speak first
+                connection.recv(1)
     except (OSError, UnicodeError) as error:
         raise ClusterError(f"--scheduler {address!r} does not answer: {error}") from error
 
@@ -183,7 +187,7 @@ def _study(text: str) -> Study:
     return study_of(document)
 
 
-def _check_workers(client: Any, address: str) -> None:
+def _check_workers(client: Any, address: str, wanted: Mapping[str, str]) -> None:
     """Every worker must compute what this machine would."""
     try:
         client.wait_for_workers(1, timeout=_WORKER_WAIT)
@@ -192,7 +196,7 @@ def _check_workers(client: Any, address: str) -> None:
     for worker, there in client.run(versions, on_error="return").items():
         if not isinstance(there, dict):
             raise ClusterError(f"worker {worker} cannot run icage: {there!r}")
-        lines = _others(there, versions())
+        lines = _others(there, wanted)
         if lines:
             raise ClusterError(f"worker {worker} has {', '.join(lines)}")
 
