@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from experiments.escape import Assault, Escape
-from experiments.intervals import wilson_upper
+from experiments.intervals import rate_upper
 from sim.attack import Attacks
 from sim.measure import Measured
 
@@ -59,7 +59,7 @@ def _run(run: Attacks, unit: float) -> dict[str, Any]:
         "attacks": len(run),
         "escapes": run.escapes,
         "diverged": run.diverged,
-        "rate_upper_95": wilson_upper(run.escapes, len(run)),
+        "rate_upper_95": rate_upper(run.escapes, len(run)),
         "penetration_max": float(run.penetration_max.max()) * unit,
         "stop_overrun": max(float(run.rise_max.max()) - 1.0, 0.0),
         "steps_mean": float(run.steps.mean()),
@@ -125,7 +125,7 @@ def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
         seen = f"{100.0 * (found.seen * unit / top - 1.0):+.3f} %"
     return (
         assault.attacker, str(len(below)), str(below.escapes),
-        f"{100.0 * wilson_upper(below.escapes, len(below)):.1f} %",
+        f"{100.0 * rate_upper(below.escapes, len(below)):.1f} %",
         *(("-", "-") if above is None else (str(len(above)), str(above.escapes))),
         f"{max(float(run.penetration_max.max()) for run in runs):.1e}",
         f"{max(max(float(run.rise_max.max()) - 1.0, 0.0) for run in runs):.1e}",

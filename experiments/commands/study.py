@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import count, file_name, not_negative, positive, seed
+from experiments.options import count, file_name, number, positive, seed
 from experiments.study.fields import HELP
 
 if TYPE_CHECKING:
@@ -72,10 +72,7 @@ def _four(text: str) -> tuple[float, ...]:
     numbers = text.split(",")
     if len(numbers) != 4:
         raise argparse.ArgumentTypeError(f"{text!r}: X,Y,THETA,SIGMA is needed")
-    values = [
-        float(not_negative(n.lstrip("-"))) * (-1 if n.startswith("-") else 1) for n in numbers
-    ]
-    return tuple(values)
+    return tuple(number(text) for text in numbers)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from experiments.escape import Assault
-from experiments.intervals import wilson_upper
+from experiments.intervals import rate_upper
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
@@ -98,7 +98,7 @@ def _run(run: Attacks) -> dict[str, Any]:
         "attacks": len(run),
         "escapes": run.escapes,
         "diverged": run.diverged,
-        "rate_upper_95": wilson_upper(run.escapes, len(run)),
+        "rate_upper_95": rate_upper(run.escapes, len(run)),
         "penetration": float(run.penetration_max.max()),
     }
 

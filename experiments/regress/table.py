@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from experiments.intervals import wilson_upper
+from experiments.intervals import rate_upper
 
 HEAD: Final = (
     "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",
@@ -111,7 +111,7 @@ def bottom_line(rows: Sequence[Mapping[str, Any]]) -> str:
     none = sum(1 for row in rows if row["physical"] is None)
     bad = sum(1 for row in rows if row["failures"])
     each = [runs["random"] for runs in below if "random" in runs]
-    worst = max((wilson_upper(r["escapes"], r["attacks"]) for r in each), default=1.0)
+    worst = max((rate_upper(r["escapes"], r["attacks"]) for r in each), default=1.0)
     return (
         f"{len(rows)} cases, {bad} failed; {target} of {trials} closings from guaranteed sets in "
         f"the target; {out} of {tried} attacks below sigma_max escaped (random attacks on one "

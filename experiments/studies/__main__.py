@@ -45,7 +45,6 @@ def ready() -> Iterator[Ready]:
     yield Ready("friction-three-edges", "friction", THREE_EDGES)
     slower = {"time_step": 5e-4, "max_time": 10.0}
     yield Ready("friction-pliers-half-step", "friction", "pliers", slower)
-    yield Ready("friction-three-edges-half-step", "friction", THREE_EDGES, slower)
     yield Ready("matters-pliers", "matters", "pliers")
 
 

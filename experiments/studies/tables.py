@@ -1,4 +1,4 @@
-"""The tables of docs/studies.md from the committed results: ``python -m experiments.studies.tables``.
+"""The tables of docs/studies.md, from the committed results.
 
 python -m experiments.studies.tables [DIR]
 """
@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from experiments.studies.__main__ import OUT, ready
-from experiments.study.results_md import percent, table
+from experiments.study.results_md import table
+from experiments.study.shown import percent
 
 
 def found_in(folder: Path) -> dict[str, dict[str, Any]]:

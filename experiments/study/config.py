@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
-from experiments.study.distributions import Distribution
+from experiments.study.distributions import LARGEST, Distribution
 from experiments.study.fields import HELP
 from experiments.study.variables import VARIABLES, read_variable
 from icage.errors import InputError
@@ -21,6 +21,10 @@ UNCAGED: Final = ("close", "skip")
 
 MOST_TRIALS: Final = 10_000_000
 _LARGEST_FILE: Final = 1_000_000
+
+THINNEST: Final = 1e-4
+"""[diameter] Least radius of a finger: the engine compiles no disc of 1e-5, and a closing presses
+them a few 1e-4 deep."""
 
 
 class ConfigError(InputError):
@@ -120,7 +124,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{str(path)!r} cannot be read: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{str(path)!r} is not TOML: {error}") from error
     for name in table:
         if name not in FIELDS:
@@ -156,24 +160,25 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     if given.get("nominal") is not None and given["starts"] != "nominal":
         raise ConfigError(f"nominal is given, but starts = {given['starts']!r}")
     config = StudyConfig(vary=vary, **given)
-    _check_hand(config, case)
-    return config
-
-
-def _check_hand(config: StudyConfig, case: Case) -> None:
-    """Errors of the hand must leave a hand."""
-    least = case.finger_radius + config.distribution("finger_radius").low
-    if not least > 0.0:
-        raise ConfigError(
-            f"vary.finger_radius: fingers of radius {case.finger_radius:g} {case.unit} would be "
-            f"down to {least:g}; more than {-case.finger_radius:g} {case.unit} is allowed"
-            + (" (use truncated)" if math.isinf(least) else "")
-        )
+    _check_fingers(config, case)
     noise = config.distribution("outline_noise").high
     if noise > 0.05 * case.outline.diameter:
         raise ConfigError(
             f"vary.outline_noise: up to {noise:g} {case.unit}; at most 5 % of the diameter, "
             f"{0.05 * case.outline.diameter:g} {case.unit}, is allowed"
+        )
+    return config
+
+
+def _check_fingers(config: StudyConfig, case: Case) -> None:
+    """Errors of their radius must leave discs."""
+    radius, thinnest = case.finger_radius, THINNEST * case.outline.diameter
+    least = radius + config.distribution("finger_radius").low
+    if "finger_radius" in config.vary and not least >= thinnest:
+        raise ConfigError(
+            f"vary.finger_radius: fingers of radius {radius:g} {case.unit} would be down to "
+            f"{least:g}; {thinnest - radius:g} {case.unit} or more is allowed"
+            + (" (use truncated)" if math.isinf(least) else "")
         )
 
 
@@ -198,7 +203,8 @@ def _typed(name: str, value: Any) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return plain and abs(value) <= LARGEST
 
 
 def _whole(name: str, value: int, low: int, high: int) -> None:

@@ -30,6 +30,9 @@ Kind = Literal["fixed", "uniform", "normal", "truncated", "grid"]
 
 LONGEST_GRID: Final = 10_000
 
+LARGEST: Final = 1e100
+"""Of any number: its square is still one."""
+
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%]*)")
 
 Convert = Callable[[float, str], float]
@@ -56,8 +59,8 @@ class Distribution:
 
     def __post_init__(self) -> None:
         p = self.parameters
-        if not all(math.isfinite(value) for value in p):
-            raise DistributionError("finite numbers are needed")
+        if not all(abs(value) <= LARGEST for value in p):
+            raise DistributionError(f"finite numbers, up to {LARGEST:g}, are needed")
         if self.kind == "uniform" and not p[0] < p[1]:
             raise DistributionError(
                 f"the range {p[0]:g} to {p[1]:g} is empty; LOW < HIGH is needed"
@@ -104,7 +107,7 @@ class Distribution:
         if self.kind == "fixed":
             return np.full(len(uniform), p[0])
         if self.kind == "uniform":
-            return p[0] + (p[1] - p[0]) * uniform
+            return np.clip(p[0] + (p[1] - p[0]) * uniform, p[0], p[1])
         if self.kind == "grid":
             return np.array(p)[np.minimum((uniform * len(p)).astype(np.int64), len(p) - 1)]
         share = np.clip(uniform, 1e-16, 1.0 - 1e-16)  # 0 would be minus infinity
@@ -133,6 +136,8 @@ def parse_distribution(given: Any, nominal: float, convert: Convert) -> Distribu
     """
     if isinstance(given, bool) or not isinstance(given, (int, float, str)):
         raise DistributionError(f"{given!r} is neither a number nor a distribution")
+    if isinstance(given, int) and abs(given) > LARGEST:
+        given = math.inf
     if not isinstance(given, str):
         return Distribution("fixed", (convert(float(given), ""),))
     head, _, rest = given.strip().partition(":")

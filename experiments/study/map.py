@@ -17,9 +17,10 @@ import shapely
 
 from experiments.drawing.sheet import Bounds
 from experiments.study.hexagons import Hexagons, bin_hexagons
+from experiments.study.map_layout import SCALE, placed
 from experiments.study.map_panel import Panel, draw_panel, draw_scale_bar
 from experiments.study.map_strip import draw_strip, strip_height, strip_keys, strip_words
-from experiments.study.pictures import MARGIN, WIDE, Page, check_suffix, settings, write
+from experiments.study.pictures import WIDE, Page, check_suffix, settings, write
 from experiments.study.shard import STUDY_OUTCOMES, target_trials
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
@@ -28,23 +29,17 @@ from icage.regions import FingerRegion
 FEWEST: Final = 3
 """[closings] A hexagon with fewer is not drawn."""
 
-CROSSES: Final = 150
+CROSSES: Final = 60
 """Failed closings are marked one by one if there are no more."""
 
-_WIDTHS: Final = (4.5, 6.0, 8.0, 10.5, 14.0)
+_WIDTHS: Final = (4.5, 6.0, 8.0, 10.0, 12.0)
 """[pt] Hexagons are as wide as the first of these at which half the closings ..."""
 
-_FULL: Final = 12
+_FULL: Final = 25
 """[closings] ... lie in one with at least so many."""
 
 _DETAIL: Final = 2.5
 """[1] Close-ups if they enlarge by more than this."""
-
-_LONG: Final = 2.0
-"""[1] Panels wider than this times their height stand one above the other."""
-
-_GAP, _TITLE, _SCALE, _TALLEST = 10.0, 16.0, 18.0, 235.0
-"""[pt] Between panels; above one, its name; below one, the scale bar; height of one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,59 +86,55 @@ def map_page(
     """The figure itself, before it is written."""
     closings = Closings.of(table, cage)
     inner = [region for region in regions if region.bound == "inner"]
-    whole, close_up = _windows(closings, cage, inner)
-    windows = [whole] * 3 if close_up is None else [whole, *close_up]
-    long = close_up is None and _aspect(whole) > _LONG
-    columns = 2 if close_up else 1 if long else 3
-    width = (WIDE - 2.0 * MARGIN - (columns - 1) * _GAP) / columns
-    tall = min(width if close_up else width / _aspect(whole), _TALLEST)
-    windows = [_filled(window, width / tall) for window in windows]
-    zoom = width / (windows[-1][2] - windows[-1][0])
-    bins = _hexagons(closings, zoom)
+    whole, close_ups = _windows(closings, cage, inner)
+    places = placed(whole, close_ups)
+    bins = _hexagons(closings, places[-1].zoom)
     failed = closings.fingers[~closings.reached]
     crosses = failed if len(failed) <= CROSSES else failed[:0]
     words = strip_words(document, bins[0].width, FEWEST)
     keys = strip_keys(cage, inner, document, crosses=bool(len(crosses)))
     strip = strip_height(words, keys)
-    page = Page(WIDE, strip + -(-len(windows) // columns) * (tall + _TITLE + _SCALE))
+    page = Page(WIDE, strip + places[-1].below)
     meant = _meant(document, cage)
-    for k, window in enumerate(windows):
-        row, column = divmod(k, columns)
-        x = MARGIN + column * (width + _GAP)
-        y = page.height - (row + 1) * (tall + _TITLE) - row * _SCALE
-        finger = k if close_up is None else k - 1
-        panel = Panel(finger, window, width / (window[2] - window[0]))
-        axes = page.axes(x, y, width, tall)
+    for k, place in enumerate(places):
+        finger = k + 3 - len(places)
+        panel = Panel(finger, place.window, place.zoom)
+        y = page.height - place.below + SCALE
+        axes = page.axes(place.x, y, place.width, place.height)
         if finger < 0:
-            draw_panel(axes, panel, cage, inner, None, crosses[:0, 0], meant)
-            panel.frames(axes, windows[1:])
+            draw_panel(axes, panel, cage, inner, None, crosses[:0, 0], meant[:0])
+            panel.frames(axes, [other.window for other in places[1:]])
         else:
             mine = [region for region in inner if region.finger == finger + 1]
-            place = meant[finger : finger + 1]
-            draw_panel(axes, panel, cage, mine, bins[finger], crosses[:, finger], place)
-        page.text(x, y + tall + 4.5, panel.title, 9.0, color=panel.ink, fontweight="bold")
+            near = meant[finger : finger + 1]
+            draw_panel(axes, panel, cage, mine, bins[finger], crosses[:, finger], near)
+        top = y + place.height + 4.5
+        page.text(place.x, top, panel.title, 9.0, color=panel.ink, fontweight="bold")
         if finger <= 0:
-            draw_scale_bar(page, x, y - 9.0, panel.zoom, document["unit"])
+            draw_scale_bar(page, place.x, y - 9.0, panel.zoom, document["unit"])
     draw_strip(page, strip, str(document["name"]), words, keys)
     return page
 
 
 def _windows(
     closings: Closings, cage: Cage, regions: Sequence[FingerRegion]
-) -> tuple[Bounds, list[Bounds] | None]:
-    """What there is to see, and a square round each finger's starts if that is much smaller."""
+) -> tuple[Bounds, list[Bounds]]:
+    """What there is to see, and a window round each finger's starts if that is much smaller."""
     size = cage.outline.diameter
     clouds = [_cloud(closings.fingers[:, k]) for k in range(3) if len(closings.fingers)]
     target = shapely.MultiPoint(cage.contacts).buffer(cage.finger_radius)
     seen = shapely.union_all([cage.outline.polygon, target, *clouds])
     extent = shapely.box(*seen.bounds).buffer(0.5 * size, join_style="mitre")
     shadows = [region.geometry.envelope.intersection(extent) for region in regions]
-    whole = shapely.union_all([seen, *shadows]).buffer(0.02 * size, join_style="mitre").bounds
-    sides = [max(c.bounds[2] - c.bounds[0], c.bounds[3] - c.bounds[1]) for c in clouds]
-    side = max(1.25 * max(sides, default=np.inf), 0.02 * size)
-    if max(whole[2] - whole[0], whole[3] - whole[1]) <= _DETAIL * side:
-        return whole, None
-    return whole, [_square(cloud.centroid, side) for cloud in clouds]
+    seen = shapely.union_all([seen, *shadows])
+    sides = np.array([[c.bounds[2] - c.bounds[0], c.bounds[3] - c.bounds[1]] for c in clouds])
+    side = 1.4 * sides.max(axis=0, initial=0.0)
+    side = np.maximum(side, [max(0.02 * size, 0.6 * side.max())] * 2)
+    wide, tall = seen.bounds[2] - seen.bounds[0], seen.bounds[3] - seen.bounds[1]
+    close = bool(clouds) and max(wide, tall) > _DETAIL * side.max()
+    close_ups = [_around(cloud.centroid, side) for cloud in clouds] if close else []
+    seen = shapely.union_all([seen, *(shapely.box(*window) for window in close_ups)])
+    return seen.buffer(0.02 * size, join_style="mitre").bounds, close_ups
 
 
 def _cloud(points: FloatArray) -> shapely.Polygon:
@@ -153,21 +144,9 @@ def _cloud(points: FloatArray) -> shapely.Polygon:
     return shapely.box(*(low - pad), *(high + pad))
 
 
-def _square(centre: shapely.Point, side: float) -> Bounds:
-    x, y, half = centre.x, centre.y, 0.5 * side
-    return x - half, y - half, x + half, y + half
-
-
-def _aspect(window: Bounds) -> float:
-    return (window[2] - window[0]) / (window[3] - window[1])
-
-
-def _filled(window: Bounds, aspect: float) -> Bounds:
-    """The window, made wider or higher to have the aspect of its panel."""
-    width, height = window[2] - window[0], window[3] - window[1]
-    more_x = max(0.0, 0.5 * (aspect * height - width))
-    more_y = max(0.0, 0.5 * (width / aspect - height))
-    return window[0] - more_x, window[1] - more_y, window[2] + more_x, window[3] + more_y
+def _around(centre: shapely.Point, side: FloatArray) -> Bounds:
+    x, y = 0.5 * float(side[0]), 0.5 * float(side[1])
+    return centre.x - x, centre.y - y, centre.x + x, centre.y + y
 
 
 def _hexagons(closings: Closings, zoom: float) -> list[Hexagons]:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Colormap
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, PathPatch, Polygon, Rectangle
+from matplotlib.patches import Circle, PathPatch, Rectangle
 
 from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
 from experiments.drawing.palette import Colour as Rgb
@@ -31,8 +32,8 @@ _HAIRLINE: Final = 0.4
 
 
 def colours() -> Colormap:
-    """Rates from 0 to 1: cividis, even in lightness, read alike with any kind of colour vision."""
-    return matplotlib.colormaps["cividis"]
+    """Rates from 0 to 1: viridis, ever lighter, so that any kind of colour vision reads it."""
+    return matplotlib.colormaps["viridis"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,19 +134,20 @@ def _draw_region(axes: Axes, region: FingerRegion, zoom: float, solid: bool) -> 
 
 
 def _draw_target(axes: Axes, panel: Panel, cage: Cage) -> None:
-    """The target's triangle; its fingers solid, but hollow those that the panel is not about."""
-    axes.add_patch(
-        Polygon(cage.contacts, closed=True, fc="none", ec=INK, lw=1.0, joinstyle="round", zorder=5)
-    )
+    """The target's triangle and rings where its fingers stand, so that hexagons show through."""
     radius = max(cage.finger_radius, _DOT / panel.zoom)
-    for k, (corner, colour) in enumerate(zip(cage.contacts, FINGERS, strict=True)):
-        mine = panel.finger in (k, -1)
-        axes.add_patch(
-            Circle(
-                (float(corner[0]), float(corner[1])), radius, fc=colour if mine else PAPER,
-                ec=PAPER if mine else colour, lw=0.6 if mine else 1.0, zorder=7,
+    contacts = cage.contacts
+    for start, end in zip(contacts, np.roll(contacts, -1, axis=0), strict=True):
+        inset = radius * (end - start) / np.hypot(*(end - start))
+        if np.hypot(*(end - start)) > 2.0 * radius:
+            axes.add_line(
+                Line2D(*np.array([start + inset, end - inset]).T, color=INK, lw=1.0, zorder=5)
             )
-        )  # fmt: skip
+    for k, (corner, colour) in enumerate(zip(contacts, FINGERS, strict=True)):
+        place = (float(corner[0]), float(corner[1]))
+        width = 1.8 if panel.finger in (k, -1) else 1.0
+        axes.add_patch(Circle(place, radius, fc="none", ec=PAPER, lw=width + 1.4, zorder=6))
+        axes.add_patch(Circle(place, radius, fc="none", ec=colour, lw=width, zorder=7))
 
 
 def draw_scale_bar(page: Page, x: float, y: float, zoom: float, unit: str) -> None:

@@ -23,7 +23,7 @@ from icage.regions import FingerRegion
 Key = tuple[str, str]
 """What is drawn, and what it means."""
 
-_LINE: Final = 96
+_LINE: Final = 102
 """[character] In a line of text."""
 
 _BAR: Final = (150.0, 8.0)
@@ -82,7 +82,7 @@ def strip_keys(
 
 def strip_height(words: Sequence[str], keys: Sequence[Key]) -> float:
     """[pt] Height of the strip."""
-    return MARGIN + ROW * len(words) + 26.0 + _KEY_ROW * max(len(keys), 3)
+    return MARGIN + ROW * len(words) + 20.0 + _KEY_ROW * max(len(keys), 3)
 
 
 def draw_strip(
@@ -106,7 +106,8 @@ def draw_strip(
 def _draw_bar(page: Page, top: float) -> None:
     """Rates 0 to 1 and their colours."""
     axes = page.axes(MARGIN + 4.0, top - 1.0, *_BAR)
-    page.figure.colorbar(ScalarMappable(cmap=colours()), cax=axes, orientation="horizontal")
+    bar = page.figure.colorbar(ScalarMappable(cmap=colours()), cax=axes, orientation="horizontal")
+    bar.outline.set(edgecolor=INK, linewidth=0.5)
     axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "0.25", "0.5", "0.75", "1"])
     axes.tick_params(labelsize=7.5, width=0.6, length=2.5, colors=INK)
     page.text(MARGIN + 4.0 + 0.5 * _BAR[0], top - 26.0, "rate of the target", 8.5, ha="center")
@@ -118,7 +119,7 @@ def _draw_key(axes: Axes, key: str, y: float) -> None:
         corners = [(x + 3.0, y - 4.0), (x + 23.0, y - 4.0), (x + 11.0, y + 4.5)]
         axes.add_patch(Polygon(corners, closed=True, fc="none", ec=INK, lw=1.0))
         for corner, colour in zip(corners, FINGERS, strict=True):
-            axes.add_patch(Circle(corner, 2.4, fc=colour, ec=PAPER, lw=0.5, zorder=3))
+            axes.add_patch(Circle(corner, 2.6, fc=PAPER, ec=colour, lw=1.4, zorder=3))
     elif key in ("solid", "dashed"):
         for k, colour in enumerate(FINGERS):
             width, dashes = region_style(key == "solid")

@@ -11,8 +11,9 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 
-from experiments.drawing.palette import INK, QUIET_INK
+from experiments.drawing.palette import INK, QUIET_INK, RULE
 from experiments.figures import FIGURE_SETTINGS, FORMATS
 from experiments.whole_files import whole_file
 from icage.errors import InputError
@@ -79,3 +80,14 @@ def write(figure: Figure, path: Path) -> None:
             figure.savefig(part, format="svg", metadata={"Date": None})
         else:
             figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
+
+
+def plain(axes: Axes, values: str = "y") -> None:
+    """Thin lines, small numbers, no box, a grid along the axis of the values."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set(color=INK, linewidth=0.6)
+    axes.tick_params(width=0.6, length=2.5, labelsize=7, colors=INK)
+    axes.grid(axis=values, color=RULE, lw=0.4)
+    axes.set_axisbelow(True)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value + 0.0:.6g}"))

@@ -6,9 +6,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from experiments.intervals import wilson_upper
+from experiments.intervals import rate_upper
+from experiments.study.shown import merged, percent
 from experiments.study.summary import sentence
 from experiments.study.variables import VARIABLES, own_unit
+
+LONGEST: Final = 40
+"""Rows of a table of rates; finer grids are merged."""
 
 _OUTCOMES: Final = {
     "target": "in the target grasp",
@@ -77,7 +81,7 @@ def _closed(found: Mapping[str, Any]) -> Iterator[str]:
     if trials and not found["failed"]:
         yield (
             f"None of {trials} failed, so at 95 % the rate of failures is below "
-            f"{percent(wilson_upper(0, trials))}."
+            f"{percent(rate_upper(0, trials))}."
         )
 
 
@@ -109,7 +113,7 @@ def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
                 percent(bin_["target"] / bin_["trials"]),
                 f"{percent(bin_['rate_95'][0])} to {percent(bin_['rate_95'][1])}",
             )
-            for bin_ in one["bins"]
+            for bin_ in merged(one["bins"], LONGEST)
         ],
     )  # fmt: skip
 
@@ -221,11 +225,6 @@ def _shown_unit(name: str, unit: str) -> str:
 def _range(name: str, bin_: Mapping[str, Any]) -> str:
     low, high = (f"{_scale(name) * bin_[end]:.4g}" for end in ("low", "high"))
     return low if low == high else f"{low} to {high}"
-
-
-def percent(rate: float) -> str:
-    """Percents with as many digits as tell a rate near 1 from 1."""
-    return f"{100.0 * rate:.4g} %"
 
 
 def _number(value: float | None, over: float = 1.0) -> str:

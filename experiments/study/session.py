@@ -27,6 +27,7 @@ from experiments.study.folder import (
 from experiments.study.run import Backend, on_threads, run_study
 from experiments.study.shard import Study
 from experiments.study.summary import sentence, summary
+from experiments.study.variables import VARIABLES
 from experiments.whole_files import whole_file
 from icage.formats.case_json import Case, read_case
 from models import case_paths, object_names
@@ -189,11 +190,14 @@ def command_line(document: Mapping[str, Any]) -> str:
     """The command that runs a study again, whatever it was given by."""
     config, default = document["config"], StudyConfig(case="").document()
     words = ["icage", "study", config["case"]]
+    if any(VARIABLES[name].group == "placement" for name in config["vary"]):
+        del default["starts"]  # it would be nominal
     for name, value in config.items():
-        if name in ("case", "vary") or value is None or value == default[name]:
+        if name in ("case", "vary") or value is None or value == default.get(name):
             continue
         text = ",".join(map(repr, value)) if isinstance(value, (list, tuple)) else str(value)
-        words += [f"--{name.replace('_', '-')}", text]
+        option = f"--{name.replace('_', '-')}"
+        words += [f"{option}={text}"] if text.startswith("-") else [option, text]
     for name, one in config["vary"].items():
         words += ["--vary", f"{name}={_written(one)}"]
     return " ".join(shlex.quote(word) for word in [*words, "--out", "DIR"])

@@ -1,4 +1,4 @@
-"""What page and pictures share: names in words, units, numbers, and few enough bins."""
+"""What the pictures of a study share: names in words, units, numbers, and few enough bins."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from experiments.intervals import wilson
-from experiments.study.variables import VARIABLES, Variable, own_unit
+from experiments.study.variables import Variable, own_unit
 
 WORDS: Final = {
     "place_x": "hand off its place, along x",
@@ -59,15 +59,6 @@ def number(value: float, digits: int = 4) -> str:
     return f"{value + 0.0:.{digits}g}"
 
 
-def quantity(value: float, unit: str, digits: int = 4) -> str:
-    """A number and its unit.
-
-    >>> quantity(2.0, "mm"), quantity(10.0, "°"), quantity(0.3, "")
-    ('2 mm', '10°', '0.3')
-    """
-    return number(value, digits) + ("" if not unit else unit if unit == "°" else f" {unit}")
-
-
 def percent(rate: float) -> str:
     """A rate in percent: 0 and 100 only if it is; one decimal, or more near the ends.
 
@@ -79,16 +70,6 @@ def percent(rate: float) -> str:
     near = min(rate, 1.0 - rate)
     decimals = max(1, 1 - math.floor(math.log10(100.0 * near * (1.0 + 1e-9))))
     return f"{100.0 * rate:.{decimals}f} %"
-
-
-def interval(ends: Sequence[float]) -> str:
-    """Two rates.
-
-    >>> interval([0.8506, 1.0])
-    '85.1 to 100 %'
-    """
-    low, high = (percent(end) for end in ends)
-    return f"{low.removesuffix(' %')} to {high}"
 
 
 def merged(bins: Sequence[Mapping[str, Any]], most: int) -> list[Mapping[str, Any]]:
@@ -111,32 +92,3 @@ def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "target": target,
         "rate_95": list(wilson(target, trials)),
     }
-
-
-def distribution_words(kind: str, parameters: Sequence[float], factor: float, unit: str) -> str:
-    """A distribution for a reader, its parameters times ``factor`` in ``unit``.
-
-    >>> distribution_words("normal", (0.0, 2.0), 1.0, "mm")
-    'normal, mean 0, standard deviation 2 mm'
-    """
-    p = [number(value * factor) for value in parameters]
-    tail = unit if unit in ("", "°") else f" {unit}"
-    if kind == "fixed":
-        return f"fixed at {p[0]}{tail}"
-    if kind == "uniform":
-        return f"uniform from {p[0]} to {p[1]}{tail}"
-    if kind == "normal":
-        return f"normal, mean {p[0]}, standard deviation {p[1]}{tail}"
-    if kind == "truncated":
-        return (
-            f"normal, mean {p[0]}, standard deviation {p[1]}{tail}, only from {p[2]} to "
-            f"{p[3]}{tail}"
-        )
-    if len(p) > 12:
-        return f"grid of {len(p)} values from {p[0]} to {p[-1]}{tail}"
-    return f"grid: {', '.join(p)}{tail}"
-
-
-def variable(name: str) -> Variable:
-    """The variable of that name."""
-    return VARIABLES[name]

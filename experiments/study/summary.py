@@ -14,6 +14,7 @@ from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.indices import sobol, split
 from experiments.study.shard import STUDY_OUTCOMES, target_trials
+from experiments.study.shown import percent
 from experiments.study.variables import VARIABLES, own_unit
 from icage.arrays import BoolArray, FloatArray
 from icage.membership import VERDICTS
@@ -33,13 +34,14 @@ def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, A
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
     count = len(reached)
-    low, high = wilson(int(reached.sum()), count)
+    alone = independent(design, count)
+    low, high = wilson(int(reached[alone].sum()), int(alone.sum()))
     clear = ~np.isin(outcomes, STUDY_OUTCOMES[-3:])
     failed = np.flatnonzero(~reached)
     found: dict[str, Any] = {
         "trials": count,
         "outcomes": {name: int((outcomes == name).sum()) for name in STUDY_OUTCOMES},
-        "target_rate": float(reached.mean()) if count else None,
+        "target_rate": float(reached[alone].mean()) if count else None,
         "target_rate_95": [low, high],
         "closed": int(clear.sum()),
         "target_rate_of_closed": float(reached[clear].mean()) if clear.any() else None,
@@ -60,6 +62,15 @@ def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, A
     if config.sampling == "saltelli":
         found["indices"] = _indices(design, reached)
     return found
+
+
+def independent(design: Design, count: int) -> BoolArray:
+    """Which of the first ``count`` trials share no input with another: rows A and B of Saltelli's
+    design, all trials of any other. Only they give a rate its interval.
+    """
+    if not design.groups:
+        return np.ones(count, dtype=np.bool_)
+    return np.arange(count) % (len(design.groups) + 2) < 2
 
 
 def _grasps(table: pa.Table, outcomes: Any) -> dict[str, int]:
@@ -130,7 +141,7 @@ def sentence(found: dict[str, Any], what: str) -> str:
     reached = found["outcomes"]["target"]
     return (
         f"{reached} of {found['trials']} trials of {what} ended in the target grasp: "
-        f"{100.0 * found['target_rate']:.4g} % (95 %: {100.0 * low:.4g} to {100.0 * high:.4g} %)"
+        f"{percent(found['target_rate'])} (95 %: {percent(low)} to {percent(high)})"
     )
 
 

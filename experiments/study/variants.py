@@ -1,7 +1,8 @@
 """Objects and hands that are not what was planned: outline, finger radius, shape of the hand, play.
 
 A variant is compiled once; what a trial calls the target is then the planned grasp moved with the
-edges it rests on: the least opening of the true hand between the same edges of the true object.
+edges it rests on: the least opening of the true hand between the same edges of the true object, or
+those that its fingers roll on to.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from experiments.least_opening import NoOpeningError, least_opening
+from experiments.least_opening import NoOpeningError, followed_opening, sliding_room
 from experiments.study.config import StudyConfig
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum
@@ -49,7 +50,10 @@ class Variant:
 
 @dataclass(frozen=True, slots=True)
 class _Moved:
-    """A grasp of the plan at its place on a variant; what the judge reads."""
+    """A grasp of the plan at its place on a variant; what the judge reads.
+
+    ``plateau``: both ends of its room, where a hand that is off holds the object loosely.
+    """
 
     id: int
     contacts: FloatArray
@@ -113,12 +117,13 @@ class Variants:
             return grasp
         radius = variant.finger_radius
         try:
-            contacts = least_opening(
+            contacts, finger, edge = followed_opening(
                 variant.outline, variant.hand, held.finger, held.edge, grasp.contacts, radius
             )
         except NoOpeningError:
             return grasp
-        return _Moved(grasp.id, contacts)
+        room = sliding_room(variant.outline, finger, edge, contacts, radius)
+        return _Moved(grasp.id, contacts, room)
 
     def _outline(self, scale: float, noise: float, shape: int) -> Outline:
         planned = self._cage.outline

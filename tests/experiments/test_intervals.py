@@ -12,10 +12,10 @@ from experiments.intervals import (
     LOOK_EVERY,
     exact_coverage,
     half_width,
+    rate_upper,
     stopped_at,
     wilson,
     wilson_bounds,
-    wilson_upper,
 )
 
 
@@ -34,15 +34,15 @@ def test_known_values():
     assert wilson(0, 10) == (0.0, pytest.approx(z2 / (10 + z2)))
     assert wilson(10, 10) == (pytest.approx(10 / (10 + z2)), 1.0)
     assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)  # Newcombe 1998, table I
-    assert wilson_upper(0, 200) == pytest.approx(0.01335, abs=1e-4)
-    assert wilson_upper(24, 24) == 1.0
-    assert 0.1 < wilson_upper(1, 24) < 0.2
+    assert rate_upper(0, 200) == pytest.approx(1.0 - 0.05 ** (1.0 / 200.0), rel=1e-12)
+    assert rate_upper(24, 24) == 1.0
+    assert 0.1 < rate_upper(1, 24) < 0.2
 
 
 def test_one_sided_bound_against_scipy():
     for successes, trials in ((0, 50), (3, 24), (199, 200)):
-        theirs = binomtest(successes, trials, alternative="less").proportion_ci(0.95, "wilson")
-        assert wilson_upper(successes, trials) == pytest.approx(theirs.high, rel=1e-12)
+        theirs = binomtest(successes, trials, alternative="less").proportion_ci(0.95, "exact")
+        assert rate_upper(successes, trials) == pytest.approx(theirs.high, rel=1e-12)
 
 
 def test_arrays_broadcast_and_agree_with_one_at_a_time():

@@ -54,7 +54,6 @@ def test_a_figure_of_the_golden_case(name: str, tmp_path: Path, capsys: Any):
     [
         (GOLDEN, "pdf"),
         (GOLDEN, "svg"),
-        (T, "svg"),
         (str(CASES / "disc_Y.json"), "svg"),
     ],
 )

@@ -137,7 +137,9 @@ def test_importing_leaves_the_choice_of_opengl_alone():
 
 
 @pytest.mark.slow
-def test_a_whole_film(done: Replay, tmp_path: Path):
+def test_a_whole_film(done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    for module in (clips, video):
+        monkeypatch.setattr(module, "FPS", 10)
     if find_backend() is None:
         pytest.skip("no offscreen OpenGL on this machine")
     film(done, "T", regions_by_grasp(done), tmp_path / VIDEO, silent, camera=True)

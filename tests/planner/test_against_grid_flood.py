@@ -30,10 +30,8 @@ SLOW_STEPS = {
     "Z_twofold_multi": 0.007,
     "cross_multi": 0.008,
     "notched_bar_best": 0.006,
-    "ngon9_best": 0.009,
     "handsaw_best": 0.009,
     "tunnel_golden": 0.004,
-    "pliers_best": 0.009,
 }
 
 STUCK = {"never_escapes_a": 0.02, "never_escapes_b": 0.01}

@@ -44,8 +44,8 @@ def test_more_point_targets() -> None:
 
 @pytest.mark.slow
 def test_more_disc_targets() -> None:
-    check([disc_targets.judge(SEED, number, (4, 8, 32)) for number in range(8, 18)])
-    check([disc_targets.judge(SEED, number, (64,)) for number in range(30, 33)])
+    check([disc_targets.judge(SEED, number, (4, 8, 32)) for number in range(8, 12)])
+    check([disc_targets.judge(SEED, number, (64,)) for number in range(30, 31)])
 
 
 def test_a_planted_disagreement_is_seen() -> None:
