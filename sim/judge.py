@@ -28,8 +28,9 @@ OUTCOMES = (
     "timed_out",
     "unmatched",
 )
-"""jammed: at rest in no grasp, held by friction. unmatched: at rest in no known grasp without any
-friction, which no frictionless body can do: the list of grasps or the physics is wrong."""
+"""jammed: at rest in no grasp, held by friction. unmatched: at rest without friction, in none of
+the given grasps. From the plan's own cage that means that plan or physics is wrong; from other
+starts, and with another object, hand or gravity than planned, there may be more grasps."""
 
 TARGET, OTHER_GRASP, JAMMED, ESCAPED, DID_DIVERGE, DID_TIME_OUT, UNMATCHED = range(7)
 

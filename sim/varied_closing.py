@@ -88,6 +88,8 @@ def close_varied(
     ----------
     scenes:
         Instrumented; with friction if any of the worlds has.
+    worlds:
+        A closing slower than usual has as much longer before it has timed out.
     threads:
         0 for one per core; the result is the same for any number.
     """
@@ -194,7 +196,8 @@ def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tupl
             expand(batch, changes)
         else:
             models += [own_model(scene.model, changes, i) for i in range(len(rows))]
-        parts.append(_Part(scene, rows, Watch.over(scene, qpos, LOOK_EVERY)))
+        patience = 1.0 / np.minimum(worlds.speed[rows], 1.0)
+        parts.append(_Part(scene, rows, Watch.over(scene, qpos, LOOK_EVERY, patience)))
         first += len(rows)
     if models:
         batch.set_models(models)

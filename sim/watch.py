@@ -45,7 +45,7 @@ def _observe(
     pinched_sigma: float,
     still_speed: float,
     still_steps: int,
-    max_steps: int,
+    max_steps: IntArray,
     stride: int,
     seen: FloatArray,
     still: IntArray,
@@ -84,7 +84,7 @@ def _observe(
             ending[i] = PINCHED
         elif still[i] >= still_steps:
             ending[i] = SETTLED
-        elif steps[i] >= max_steps:
+        elif steps[i] >= max_steps[i]:
             ending[i] = TIMED_OUT
 
 
@@ -104,13 +104,20 @@ class Watch:
     steps: IntArray
     ending: IntArray
     stride: int
+    _max_steps: IntArray
     _still: IntArray
     _seen: FloatArray
 
     @classmethod
-    def over(cls, scene: Scene, qpos: FloatArray, stride: int = 1) -> Watch:
-        """Start watching closings that start from qpos (N, 6), every ``stride`` steps."""
+    def over(
+        cls, scene: Scene, qpos: FloatArray, stride: int = 1, patience: FloatArray | None = None
+    ) -> Watch:
+        """Start watching closings that start from qpos (N, 6), every ``stride`` steps.
+
+        ``patience`` (N,) multiplies the scene's time until a closing has timed out.
+        """
         count = len(qpos)
+        longer = np.ones(count) if patience is None else patience
         seen = np.zeros((count, _FIELDS))
         seen[:, _SIGMA_START] = scene.sigma(qpos)
         return cls(
@@ -118,6 +125,7 @@ class Watch:
             steps=np.zeros(count, dtype=np.int64),
             ending=np.full(count, RUNNING, dtype=np.int64),
             stride=stride,
+            _max_steps=np.ceil(scene.config.max_steps * longer).astype(np.int64),
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )
@@ -138,7 +146,7 @@ class Watch:
             config.pinched_size / kinematics.longest_side,
             config.still_speed,
             config.still_steps,
-            config.max_steps,
+            self._max_steps,
             self.stride,
             self._seen,
             self._still,

@@ -12,8 +12,9 @@ HELP: Final = {
     "starts": "where the hand is meant to stand: guaranteed (uniform in the guaranteed set), cage "
     "(uniform in the whole cage) or nominal (one placement); default: nominal if placement varies, "
     "else guaranteed",
-    "nominal": "x,y,theta,sigma of the nominal placement, in the case's unit and rad; default: the "
-    "one with the most room of 1,000 from the guaranteed set",
+    "nominal": "x,y,theta,sigma of the nominal placement, in the case's unit and rad (where x is "
+    "negative: --nominal=...); default: the one with the most room of 1,000 from the guaranteed "
+    "set",
     "sampling": "random (default), sobol (scrambled: rates converge faster) or saltelli (says "
     "which input matters most)",
     "uncaged": "starts that the planner does not call caged: close from them all the same (the "
@@ -22,7 +23,8 @@ HELP: Final = {
     "it at most this; looked at every 500 trials",
     "position_tolerance": "an end this near a grasp, in diameters (default 0.005), and ...",
     "angle_tolerance": "... turned by no more than this, in rad (default 0.02), is in it",
-    "max_time": "in s, a closing still moving then has timed out (default 5)",
+    "max_time": "in s, a closing still moving then has timed out (default 5; a slower hand has as "
+    "much longer)",
     "time_step": "of the engine, in s (default 0.001)",
     "vary": "an uncertain input, e.g. friction=0:0.8 or place_xy=normal:2mm; `--variables` lists "
     "them; as often as there are inputs",

@@ -9,7 +9,7 @@ from typing import Any, Final
 from experiments.intervals import rate_upper
 from experiments.study.shown import merged, percent
 from experiments.study.summary import sentence
-from experiments.study.variables import VARIABLES, own_unit
+from experiments.study.variables import VARIABLES, Variable, own_unit
 
 LONGEST: Final = 40
 """Rows of a table of rates; finer grids are merged."""
@@ -181,10 +181,12 @@ def _method(
     yield f"- Sampling: {config['sampling']}, seed {config['seed']}."
     for name, one in config["vary"].items():
         yield f"- {name} ({VARIABLES[name].help}): {_distribution(name, one, unit)}."
+    yield f"- Not varied: {_nominal(config['vary'])}."
     yield (
         f"- An end counts as a grasp within {config['position_tolerance']:g} diameters and "
         f"{config['angle_tolerance']:g} rad; those in the target were off by at most "
-        f"{_number(found['position_error_max'], size)} diameters and "
+        f"{_number(found['position_error_max'], size)} diameters "
+        f"({_number(found['position_error_max'])} {unit}) and "
         f"{_number(found['angle_error_max'])} rad."
     )
     yield (
@@ -199,6 +201,18 @@ def _method(
     stopped = document["stopped"]
     how = "stopped early" if stopped["early"] else "ran to its end"
     yield f"- It {how}: {stopped['at']} trials; {stopped['why']}."
+
+
+def _nominal(vary: Mapping[str, Any]) -> str:
+    left = [one for name, one in VARIABLES.items() if name not in vary]
+    zero = ", ".join(one.name for one in left if not one.nominal)
+    others = (f"{one.name} {_plain(one)}" for one in left if one.nominal)
+    return "; ".join(part for part in (", ".join(others), zero and f"0: {zero}") if part)
+
+
+def _plain(one: Variable) -> str:
+    shown = f"{_scale(one.name) * one.nominal:.4g}"
+    return f"{shown} deg" if one.measure == "angle" else shown
 
 
 def _distribution(name: str, one: Mapping[str, Any], unit: str) -> str:
@@ -228,9 +242,10 @@ def _range(name: str, bin_: Mapping[str, Any]) -> str:
 
 
 def _number(value: float | None, over: float = 1.0) -> str:
-    return (
-        "none" if value is None else f"{value / over:.2g}" if value / over < 10 else f"{value:.0f}"
-    )
+    if value is None:
+        return "none"
+    shown = value / over
+    return f"{shown:.2g}" if shown < 10 else f"{shown:.0f}"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:

@@ -198,16 +198,29 @@ def test_mean_distance_of_a_shape_whose_edges_face_the_middle(grasp: KnownGrasp)
     assert mean_distance(thing.vertices) == pytest.approx(distance.mean(), abs=4.0 * spread)
 
 
+def test_a_slower_hand_has_as_much_longer():
+    grasp = t_shape()
+    starts = starts_near(grasp, 3, seed=4)
+    usual = close(scene_of(grasp), starts).closings.steps.max()
+    brief = scene_of(grasp, max_time=1.1e-3 * usual)
+    worlds = Worlds.usual(3)
+    worlds.speed[:] = 0.1
+    found = close(brief, starts, worlds)
+    assert endings(found) == ["settled"] * 3
+    assert found.closings.steps.min() > 2 * usual
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.9])
 def test_an_untouched_object_slides_downhill(turn: float):
     """At mass * gravity / damping, less what the table holds back; the hand hardly moves."""
     grasp = t_shape()
-    scene, count, time = scene_of(grasp, max_time=0.3), 6, 0.3
+    slow, count, time = 0.02, 6, 0.3
+    scene = scene_of(grasp, max_time=slow * time)  # slower hands have as much longer
     starts = np.tile(wide_start(grasp, 6.0, turn), (count, 1))
     worlds, downhill, pull = Worlds.usual(count), 0.7, 0.1
     worlds.gravity_x[:] = pull * np.cos(downhill)
     worlds.gravity_y[:] = pull * np.sin(downhill)
-    worlds.speed[:] = 0.02
+    worlds.speed[:] = slow
     worlds.mass[:] = [1.0, 2.0, 1.0, 1.0, 1.0, 1.0]
     worlds.inertia[2], worlds.com_x[3] = 3.0, 1e-9
     worlds.gravity_x[4:], worlds.gravity_y[4:] = pull, 0.0
@@ -228,7 +241,7 @@ def test_an_untouched_object_slides_downhill(turn: float):
 
 def test_an_object_whose_middle_is_off_its_weight_turns():
     grasp = t_shape()
-    scene = scene_of(grasp, max_time=0.2)
+    scene = scene_of(grasp, max_time=0.02 * 0.2)
     starts = np.tile(wide_start(grasp, 6.0, -grasp.target.theta), (2, 1))  # axes of both agree
     worlds = Worlds.usual(2)
     worlds.gravity_x[:], worlds.com_y[:], worlds.speed[:] = 0.05, [0.1, -0.1], 0.02
