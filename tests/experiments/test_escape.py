@@ -110,15 +110,15 @@ def test_bad_input(tmp_path: Path, capsys: Any):
 def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
     case = write_case(t_case(), tmp_path / "t.json")
     out = tmp_path / "answer.json"
-    result = here(capsys, "escape", str(case), "--attacks", "4", "--json", str(out))
+    result = here(capsys, "escape", str(case), "--attacks", "2", "--json", str(out))
     assert result.code == 0, result
     document = json.loads(out.read_text())
     assert document["verdict"] == "ok"
     for name in ("random", "guided"):
         assert document["attackers"][name]["below"]["escapes"] == 0
-        assert document["attackers"][name]["below"]["attacks"] == 4
+        assert document["attackers"][name]["below"]["attacks"] == 2
     guided = document["attackers"]["guided"]
-    assert guided["above"]["escapes"] == 4
+    assert guided["above"]["escapes"] == 2
     top = document["sigma_max"]
     assert guided["measured"]["low"] == pytest.approx(top, rel=5e-4)
     assert guided["measured"]["high"] == pytest.approx(top, rel=5e-4)
@@ -135,7 +135,7 @@ def test_a_sigma_max_that_is_too_small_is_found():
     wrong = replace(
         cage, sigma_max=factor * cage.sigma_max, sigma_max_upper=factor * cage.sigma_max_upper
     )
-    result = attacked(PhysicalCase.of(t_case(), wrong), 4, 0, 2, silent, ["guided"])
+    result = attacked(PhysicalCase.of(t_case(), wrong), 2, 0, 2, silent, ["guided"])
     assert result.verdict == "failed"
     assert any("guided" in sentence and words in sentence for sentence in result.failures)
     assert any("guided" in sentence and "measure" in sentence for sentence in result.failures)

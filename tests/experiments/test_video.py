@@ -139,7 +139,7 @@ def test_importing_leaves_the_choice_of_opengl_alone():
 @pytest.mark.slow
 def test_a_whole_film(done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for module in (clips, video):
-        monkeypatch.setattr(module, "FPS", 10)
+        monkeypatch.setattr(module, "FPS", 5)
     if find_backend() is None:
         pytest.skip("no offscreen OpenGL on this machine")
     film(done, "T", regions_by_grasp(done), tmp_path / VIDEO, silent, camera=True)
@@ -149,8 +149,8 @@ def test_a_whole_film(done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPa
 @pytest.mark.slow
 def test_the_command_makes_a_film(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video, "find_backend", lambda: None)
-    for module in (clips, video):  # a third of the frames takes a third of the time
-        monkeypatch.setattr(module, "FPS", 10)
+    for module in (clips, video):  # a sixth of the frames takes a sixth of the time
+        monkeypatch.setattr(module, "FPS", 5)
     case = write_case(t_case(), tmp_path / "t.json")
     result = here(capsys, "replay", str(case), "--out", str(tmp_path / "out"), "--trials", "1")
     assert result.code == 0, result
