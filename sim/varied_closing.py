@@ -33,12 +33,15 @@ CREEP_SPEED: Final = 1e-3
 CREEP_STEPS: Final = 100
 """[step] In this time a creeping object moves by less than 1e-4."""
 
-RATTLE: Final = 1e-3
-"""[diameter, rad] ... as are those that stay within this, times the closing speed if it is below
-1, for ``RATTLE_STEPS``. With friction a contact may be lost for a step and come back, for ever
-(8 of 20 saws at 0.3)."""
+DRIFT: Final = 1e-4
+"""[diameter, rad] ... as are those whose mean positions over one span of ``DRIFT_STEPS`` and over
+the next differ by less than this, times the closing speed if it is below 1, while they stay within
+``SWING``. With friction a contact may be lost for a step and come back, for ever: such objects
+swing by up to 6e-4 and 3e-3 rad, and their means differ by 1e-5, at times 1e-4 (seen); the slowest
+that still slid moved by 5e-3 in this time."""
 
-RATTLE_STEPS: Final = 500
+DRIFT_STEPS: Final = 500
+SWING: Final = 5e-3
 
 TOGETHER: Final = 24
 """[trial] From this many trials on, a scene has a batch of its own."""
@@ -53,21 +56,31 @@ class VariedOutcomes:
 
 
 class _Rest:
-    """Which trials of a batch creep, or rattle within ``reach`` (N,), from positions (N, 6) on."""
+    """Which trials of a batch creep, or swing about a mean that drifts less than ``drift`` (N,)."""
 
-    def __init__(self, positions: FloatArray, reach: FloatArray) -> None:
-        self._anchor, self._reach = positions, reach
-        self._creeping, self._near = np.zeros((2, len(positions)), dtype=np.int64)
-        self.found = np.zeros(len(positions), dtype=np.bool_)
+    def __init__(self, count: int, drift: FloatArray) -> None:
+        self._drift = drift[:, None]
+        self._creeping, self._seen = np.zeros((2, count), dtype=np.int64)
+        self._sum = np.zeros((count, 6))
+        self._mean = np.full((count, 6), np.inf)
+        self._swing = np.zeros((count, 6))
+        self.found = np.zeros(count, dtype=np.bool_)
 
     def look(self, ids: IntArray, positions: FloatArray, velocities: FloatArray) -> None:
         """Look at trials ``ids`` after ``LOOK_EVERY`` more steps."""
         slow = np.abs(velocities[ids]).max(axis=1) < CREEP_SPEED
         self._creeping[ids] = np.where(slow, self._creeping[ids] + LOOK_EVERY, 0)
-        near = np.abs(positions[ids] - self._anchor[ids]).max(axis=1) < self._reach[ids]
-        self._near[ids] = np.where(near, self._near[ids] + LOOK_EVERY, 0)
-        self._anchor[ids[~near]] = positions[ids[~near]]
-        self.found[ids] = (self._creeping[ids] >= CREEP_STEPS) | (self._near[ids] >= RATTLE_STEPS)
+        self.found[ids] = self._creeping[ids] >= CREEP_STEPS
+        self._seen[ids] += LOOK_EVERY
+        self._sum[ids] += positions[ids]
+        self._swing[ids] = np.maximum(self._swing[ids], np.abs(positions[ids] - self._mean[ids]))
+        self._end_span(ids[self._seen[ids] % DRIFT_STEPS == 0])
+
+    def _end_span(self, ids: IntArray) -> None:
+        mean = self._sum[ids] / (DRIFT_STEPS // LOOK_EVERY)
+        still = np.abs(mean - self._mean[ids]) < self._drift[ids]
+        self.found[ids] |= (still & (self._swing[ids] < SWING)).all(axis=1)
+        self._mean[ids], self._sum[ids], self._swing[ids] = mean, 0.0, 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +152,7 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
     held_up = (worlds.friction > 0.0) | (worlds.table_friction > 0.0)
     rough = np.concatenate([held_up[rows] for _, rows in lot])
     pace = np.concatenate([worlds.speed[rows] for _, rows in lot])
-    rest, peak = _Rest(np.array(positions), RATTLE * np.minimum(pace, 1.0)), np.zeros(total)
+    rest, peak = _Rest(total, DRIFT * np.minimum(pace, 1.0)), np.zeros(total)
     running = np.arange(total)
     while len(running):
         lost: Any = ()

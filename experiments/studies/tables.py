@@ -6,10 +6,13 @@ python -m experiments.studies.tables [DIR]
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import pyarrow.parquet as pq
 
 from experiments.studies.__main__ import OUT, ready
 from experiments.study.results_md import table
@@ -69,11 +72,36 @@ def by_value(documents: Mapping[str, Mapping[str, Any]], variable: str) -> Itera
     yield from table((variable, *names), rows)
 
 
+def by_two(folder: Path, study: str, rows: str, columns: str) -> Iterator[str]:
+    """Closings of a study over two variables on grids: a line per value of ``rows`` and tool."""
+    grids: dict[str, dict[tuple[float, float], list[bool]]] = {}
+    for one in ready():
+        path = folder / one.name / "trials.parquet"
+        if one.file == study and path.exists():
+            trials = pq.read_table(path, columns=[rows, columns, "outcome"]).to_pydict()
+            cells = grids.setdefault(one.name.removeprefix(f"{study}-"), {})
+            for a, b, outcome in zip(*trials.values(), strict=True):
+                cells.setdefault((a, b), []).append(outcome == "target")
+    if not grids:
+        return
+    pairs = sorted({pair for cells in grids.values() for pair in cells})
+    over = sorted({b for _, b in pairs})
+    head = [f"{name}, {columns.replace('_', ' ')} {b:g}" for name in grids for b in over]
+    lines = [
+        (f"{math.degrees(a):.4g} deg", *(
+            f"{sum(cells[a, b])} of {len(cells[a, b])}" for cells in grids.values() for b in over
+        ))
+        for a in sorted({a for a, _ in pairs})
+    ]  # fmt: skip
+    yield from table((rows, *head), lines)
+
+
 def main(folder: str = str(OUT)) -> None:
     """Print all tables."""
     documents = found_in(Path(folder))
     for lines in (
-        overview(documents), by_value(documents, "friction"), by_value(documents, "speed")
+        overview(documents), by_value(documents, "friction"), by_value(documents, "speed"),
+        by_two(Path(folder), "tilt", "tilt", "table_friction"),
     ):  # fmt: skip
         print("\n".join(lines))
         print()

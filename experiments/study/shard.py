@@ -113,7 +113,8 @@ def run_trials(study: Study, trials: IntArray) -> Ran:
         rows = done[here]
         found = _judged(study, known[number], closings.closings.picked(here))
         outcome[rows], grasp_id[rows], errors[rows] = found
-    held_up = (values["friction"] > 0.0) | (values["table_friction"] > 0.0)
+    rough = (values["friction"] > 0.0) | (values["table_friction"] > 0.0)
+    held_up = rough | ((values["tilt"] > 0.0) & (values["weight"] > 0.0))
     outcome[(outcome == UNMATCHED) & held_up] = JAMMED
     return Ran(
         trials, values, meant, starts, answers, outcome, grasp_id, errors, done, closings, known,

@@ -82,6 +82,11 @@ def shipped(name: str) -> KnownGrasp:
             [324.574041865802, 111.10441218066876],
             [323.0945966978584, 24.757924438640092],
         ],
+        "wrench": [
+            [53.44825838482677, 143.22669959053394],
+            [78.43899251310799, 78.68587325356026],
+            [121.41861433054112, 120.75926202520759],
+        ],
     }[name]
     case = json.loads(models.outline_path(name).read_text())
     return KnownGrasp(Outline(case["outline"]["vertices"]), 6.0, np.array(contacts))
