@@ -44,7 +44,8 @@ def ready() -> Iterator[Ready]:
             yield Ready(f"{study}-{tool}", study, tool)
     yield Ready("friction-three-edges", "friction", THREE_EDGES)
     slower = {"time_step": 5e-4, "max_time": 10.0}
-    yield Ready("friction-pliers-half-step", "friction", "pliers", slower)
+    for tool in ("pliers", "wrench"):
+        yield Ready(f"friction-{tool}-half-step", "friction", tool, slower)
     yield Ready("matters-pliers", "matters", "pliers")
 
 

@@ -431,6 +431,30 @@ def test_a_grasp_of_the_plan_is_found_on_a_variant_whoever_else_is_there():
         assert alone[2].tobytes() == errors[k : k + 1].tobytes()
 
 
+def test_an_end_that_no_plan_has_is_a_grasp_of_the_true_object():
+    """Number 218 of ``docs/studies/radius-saw``: fingers 1.9 mm thinner than planned.
+
+    The drawn object's plan promised the target; that of the true fingers does not, and has the grasp
+    that the closing ended in.
+    """
+    one = study("saw", vary={"finger_radius": "-0.5%:0.5%"})
+    ran = run_trials(one, np.array([218]))
+    assert outcomes(ran) == ["unmatched"]
+    assert ran.answers.verdict.tolist() == [TARGET]
+    (variant,) = ran.variants
+    assert variant.finger_radius < 4.1
+    (target,) = one.variants.grasps(variant, one.cage.grasps[:1])
+    true = plan(variant.outline, target.contacts, variant.finger_radius)
+    said = query(true, ran.starts)
+    assert said.in_cage.all()
+    assert TARGET not in said.verdict
+    near = [
+        np.max(grasp_errors(ran.closings.closings.end, g, variant.outline)) for g in true.grasps
+    ]
+    assert min(near) < 1e-4
+    assert true.grasps[int(np.argmin(near))].id in said.grasps_of(0)
+
+
 # ---------------------------------------------------------------------------- worlds
 
 
