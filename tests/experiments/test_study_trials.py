@@ -434,8 +434,8 @@ def test_a_grasp_of_the_plan_is_found_on_a_variant_whoever_else_is_there():
 def test_an_end_that_no_plan_has_is_a_grasp_of_the_true_object():
     """Number 218 of ``docs/studies/radius-saw``: fingers 1.9 mm thinner than planned.
 
-    The drawn object's plan promised the target; that of the true fingers does not, and has the grasp
-    that the closing ended in.
+    The plan of the fingers as drawn promised the target; that of the true ones does not, and has
+    the grasp that the closing ended in.
     """
     one = study("saw", vary={"finger_radius": "-0.5%:0.5%"})
     ran = run_trials(one, np.array([218]))
