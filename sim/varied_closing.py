@@ -27,8 +27,9 @@ LOOK_EVERY: Final = 5
 
 CREEP_SPEED: Final = 1e-3
 """[diameter / s, rad / s] Trials with friction, of fingers or table, slower than this for
-``CREEP_STEPS`` are at rest. Sticking is regularized in the engine, so a jammed object creeps, at
-1e-5 to 3e-4 (seen); sliding ones move at 1e-2 or more."""
+``CREEP_STEPS`` are at rest. Sticking is regularized in the engine, so a jammed object creeps,
+mostly at 1e-5 to 3e-4, at 1.4e-3 where the fingers press hardest (seen); sliding ones move at 1e-2
+or more."""
 
 CREEP_STEPS: Final = 100
 """[step] In this time a creeping object moves by less than 1e-4."""
