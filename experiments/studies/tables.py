@@ -72,6 +72,26 @@ def by_value(documents: Mapping[str, Mapping[str, Any]], variable: str) -> Itera
     yield from table((variable, *names), rows)
 
 
+def nearby(folder: Path, study: str, over: str, position: float, angle: float) -> Iterator[str]:
+    """Closings per value of ``over`` that ended within ``position`` [diameter], ``angle`` [rad]."""
+    columns: dict[str, dict[float, list[bool]]] = {}
+    for one in ready():
+        path = folder / one.name
+        if one.file == study and (path / "trials.parquet").exists():
+            size = json.loads((path / "study.json").read_text(encoding="utf-8"))["diameter"]
+            names = [over, "position_error", "angle_error"]
+            trials = pq.read_table(path / "trials.parquet", columns=names).to_pydict()
+            cells = columns.setdefault(one.name.removeprefix(f"{study}-").replace("-", " "), {})
+            for value, off, turn in zip(*trials.values(), strict=True):
+                cells.setdefault(value, []).append(off <= position * size and turn <= angle)
+    values = sorted({value for cells in columns.values() for value in cells})
+    lines = [
+        (f"{v:g}", *(f"{sum(cells[v])} of {len(cells[v])}" for cells in columns.values()))
+        for v in values
+    ]
+    yield from table((over, *columns), lines)
+
+
 def by_two(folder: Path, study: str, rows: str, columns: str) -> Iterator[str]:
     """Closings of a study over two variables on grids: a line per value of ``rows`` and tool."""
     grids: dict[str, dict[tuple[float, float], list[bool]]] = {}
@@ -101,6 +121,7 @@ def main(folder: str = str(OUT)) -> None:
     documents = found_in(Path(folder))
     for lines in (
         overview(documents), by_value(documents, "friction"), by_value(documents, "speed"),
+        nearby(Path(folder), "friction", "friction", 0.02, 0.1),
         by_two(Path(folder), "tilt", "tilt", "table_friction"),
     ):  # fmt: skip
         print("\n".join(lines))
