@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -44,28 +45,23 @@ def _distribution(name: str, one: Mapping[str, Any], diameter: float | None) -> 
 
 
 def _forms(name: str, value: float, diameter: float | None) -> Iterator[str]:
-    """Ways to write a value of a variable; each is read as exactly this value. An angle says its
-    unit.
-    """
+    """Ways to write a value of a variable, each read as exactly this value; angles say the unit."""
     measure = VARIABLES[name].measure
     if measure == "angle":
-        degrees = _as_multiple(value, value / DEGREE, lambda number: number * DEGREE)
-        if degrees is not None:
-            yield f"{degrees}deg"
+        yield from _as_multiple(value, (DEGREE,), "deg")
         yield f"{shortest(value)}rad"
         return
     yield shortest(value)
     if measure == "length" and diameter is not None:
-        share = _as_multiple(
-            value, value / diameter / PERCENT, lambda number: PERCENT * number * diameter
-        )
-        if share is not None:
-            yield f"{share}%"
+        yield from _as_multiple(value, (PERCENT, diameter), "%")
 
 
-def _as_multiple(value: float, about: float, convert: Any) -> str | None:
-    """The shortest number near ``about`` that is converted to exactly ``value``."""
-    return next((text for text in _rounded(about) if convert(float(text)) == value), None)
+def _as_multiple(value: float, factors: tuple[float, ...], unit: str) -> Iterator[str]:
+    """The shortest number that, times the factors in their order, is exactly ``value``; if any."""
+    for text in _rounded(value / math.prod(factors)):
+        if math.prod(factors, start=float(text)) == value:
+            yield f"{text}{unit}"
+            return
 
 
 def shortest(value: float) -> str:

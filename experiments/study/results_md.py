@@ -96,13 +96,15 @@ def _closed(found: Mapping[str, Any]) -> Iterator[str]:
 def _verdicts(found: Mapping[str, Any], other_shapes: bool) -> Iterator[str]:
     yield ""
     yield (
-        "What the planner says of the planned hand and object, were the hand to stand at each "
+        "What the planner says of the planned hand and object, were that hand to stand at each "
         "trial's start, and what became of the true ones:"
+        if other_shapes
+        else "What the planner says of the starts, and what became of them:"
     )
     yield ""
     yield from table(
-        ("planned hand", "in the target's cage", "trials", "closed", "target", "other grasp",
-         "escaped", "elsewhere"),
+        ("planned hand" if other_shapes else "start", "in the target's cage", "trials", "closed",
+         "target", "other grasp", "escaped", "elsewhere"),
         [
             (
                 VERDICT_WORDS[one["verdict"]], _caged(one),
