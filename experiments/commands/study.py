@@ -44,8 +44,10 @@ def add_parser(subparsers: Any) -> None:
     for name in _POSITIVE:
         parser.add_argument(_option(name), metavar="X", type=positive, help=HELP[name])
     parser.add_argument(
-        "--resume", action="store_true", help="go on with the study in DIR; CASE may be left out"
-    )
+        "--resume", action="store_true",
+        help="go on with the study in DIR; CASE and all the rest may be left out, and "
+        "more --trials asked for",
+    )  # fmt: skip
     parser.add_argument(
         "--threads", metavar="T", type=count, default=None, help="default: one per core"
     )

@@ -37,7 +37,7 @@ def overview(documents: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     rows: list[Sequence[str]] = []
     for name, document in documents.items():
         found = document["found"]
-        low, high = found["target_rate_of_closed_95"]
+        interval = found["target_rate_of_closed_95"]
         elsewhere = {
             k: v
             for k, v in found["outcomes"].items()
@@ -46,11 +46,17 @@ def overview(documents: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
         rows.append((
             f"[{name}](studies/{name}/results.md)", str(found["trials"]),
             str(found["trials"] - found["closed"]),
-            f"{found['outcomes']['target']} of {found['closed']}",
-            f"{percent(low)} to {percent(high)}",
+            _of_closed(found),
+            " to ".join(percent(end) for end in interval) if interval else "",
             ", ".join(f"{v} {k.replace('_', ' ')}" for k, v in elsewhere.items()) or "none",
         ))  # fmt: skip
     yield from table(head, rows)
+
+
+def _of_closed(found: Mapping[str, Any]) -> str:
+    """Counts of the independent closings, which the interval is of."""
+    one = found["independent"]
+    return f"{one['target']} of {one['closed']}"
 
 
 def by_value(documents: Mapping[str, Mapping[str, Any]], variable: str) -> Iterator[str]:

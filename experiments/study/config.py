@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from experiments.study.distributions import LARGEST, Distribution
 from experiments.study.fields import HELP
+from experiments.study.fits import check_fits
 from experiments.study.variables import VARIABLES, read_variable
 from icage.errors import InputError
 from icage.formats.case_json import Case
@@ -21,10 +22,6 @@ UNCAGED: Final = ("close", "skip")
 
 MOST_TRIALS: Final = 10_000_000
 _LARGEST_FILE: Final = 1_000_000
-
-THINNEST: Final = 1e-4
-"""[diameter] Least radius of a finger: the engine compiles no disc of 1e-5, and a closing presses
-them a few 1e-4 deep."""
 
 
 class ConfigError(InputError):
@@ -72,6 +69,8 @@ class StudyConfig:
                     f"until_half_width with sampling = {self.sampling!r}: its design is made for "
                     "all trials; random is needed"
                 )
+        if self.nominal is not None and not self.nominal[3] > 0.0:
+            raise ConfigError(f"nominal: sigma is {self.nominal[3]:g}; above 0 is needed")
         drawn = self.starts != "nominal" or self.noisy
         varied = drawn or any(d.varies for d in self.vary.values())
         if self.sampling == "saltelli" and not varied:
@@ -141,7 +140,7 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
 
     Raises
     ------
-    ConfigError, VariableError:
+    ConfigError, VariableError, MisfitError:
         Names the field, what was found and what is allowed.
     """
     given = dict(table)
@@ -160,26 +159,8 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     if given.get("nominal") is not None and given["starts"] != "nominal":
         raise ConfigError(f"nominal is given, but starts = {given['starts']!r}")
     config = StudyConfig(vary=vary, **given)
-    _check_fingers(config, case)
-    noise = config.distribution("outline_noise").high
-    if noise > 0.05 * case.outline.diameter:
-        raise ConfigError(
-            f"vary.outline_noise: up to {noise:g} {case.unit}; at most 5 % of the diameter, "
-            f"{0.05 * case.outline.diameter:g} {case.unit}, is allowed"
-        )
+    check_fits(vary, config.nominal, case)
     return config
-
-
-def _check_fingers(config: StudyConfig, case: Case) -> None:
-    """Errors of their radius must leave discs."""
-    radius, thinnest = case.finger_radius, THINNEST * case.outline.diameter
-    least = radius + config.distribution("finger_radius").low
-    if "finger_radius" in config.vary and not least >= thinnest:
-        raise ConfigError(
-            f"vary.finger_radius: fingers of radius {radius:g} {case.unit} would be down to "
-            f"{least:g}; {thinnest - radius:g} {case.unit} or more is allowed"
-            + (" (use truncated)" if math.isinf(least) else "")
-        )
 
 
 def _typed(name: str, value: Any) -> Any:

@@ -1,7 +1,7 @@
 """Distributions of uncertain inputs, and the words a user writes for them.
 
-    0.3                     fixed
-    0:0.8                   uniform
+    0.3                     fixed (also fixed:0.3)
+    0:0.8                   uniform (also uniform:0:0.8)
     normal:2mm              normal about the variable's nominal value
     normal:1:0.1            normal with mean and standard deviation
     truncated:0.3:0.1:0:1   normal, conditioned on an interval
@@ -95,6 +95,14 @@ class Distribution:
         if self.kind == "normal":
             return math.inf
         return self.parameters[3] if self.kind == "truncated" else max(self.parameters)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Least and largest value; of a normal distribution, four standard deviations each way."""
+        if self.kind != "normal":
+            return self.low, self.high
+        mean, deviation = self.parameters
+        return mean - 4.0 * deviation, mean + 4.0 * deviation
 
     @property
     def varies(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
@@ -13,6 +14,7 @@ from experiments.study.shard import Study
 from experiments.versions import versions
 from icage.errors import InputError
 from icage.formats.case_json import Case
+from icage.membership import VERDICTS, query
 from icage.outline import Outline
 from icage.planner import plan
 
@@ -36,15 +38,28 @@ def study_document(study: Study) -> dict[str, Any]:
         },
         "diameter": case.outline.diameter,
         "config": study.config.document(),
-        "nominal": None
-        if study.intended.nominal is None
-        else dict(zip(("x", "y", "theta", "sigma"), study.intended.nominal.tolist(), strict=True)),
+        "nominal": _nominal(study),
         "versions": versions(),
     }
 
 
-def study_of(document: Mapping[str, Any]) -> Study:
-    """The study of a document, planned afresh.
+def _nominal(study: Study) -> dict[str, Any] | None:
+    """The placement that is meant and what the planner says of it; None if many are meant."""
+    nominal = study.intended.nominal
+    if nominal is None:
+        return None
+    answers = query(study.cage, nominal[None, :])
+    margin = float(answers.margin[0])
+    return {
+        **dict(zip(("x", "y", "theta", "sigma"), nominal.tolist(), strict=True)),
+        "verdict": VERDICTS[int(answers.verdict[0])],
+        "in_cage": bool(answers.in_cage[0]),
+        "margin": None if math.isnan(margin) else margin,
+    }
+
+
+def study_of(document: Mapping[str, Any], trials: int | None = None) -> Study:
+    """The study of a document, planned afresh; with another number of trials if one is given.
 
     Raises
     ------
@@ -60,6 +75,8 @@ def study_of(document: Mapping[str, Any]) -> Study:
         )  # fmt: skip
         plain = dict(document["config"])
         nominal = plain.pop("nominal")
+        if trials is not None:
+            plain["trials"] = trials
         vary = {
             name: Distribution(one["kind"], tuple(one["parameters"]))
             for name, one in plain.pop("vary").items()

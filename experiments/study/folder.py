@@ -13,7 +13,6 @@ import re
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -149,6 +148,27 @@ class StudyFolder:
         with suppress(OSError):
             (self.path / SHARDS).rmdir()
 
+    def beyond(self, total: int) -> int:
+        """How far the trials of this study go: one more than the last of them, 0 if none is past
+        the first ``total``. Nothing is touched.
+        """
+        ends = [self._rows(self.path / TRIALS)]
+        for path in (self.path / SHARDS).glob("trials-*.parquet"):
+            name = _NAME.fullmatch(path.name)
+            if name and int(name[2]) >= total and self._rows(path):
+                ends.append(int(name[2]) + 1)
+        return max(ends) if max(ends) > total else 0
+
+    def _rows(self, path: Path) -> int:
+        """Rows of a table of this study by its own words, 0 if it is none."""
+        try:
+            with pq.ParquetFile(path) as file:
+                words = file.schema_arrow.metadata or {}
+                own = words.get(_KEY) == self.fingerprint.encode()
+                return int(file.metadata.num_rows) if own else 0
+        except (OSError, ValueError, pa.ArrowException):
+            return 0
+
     def sweep(self) -> None:
         """Remove what a killed process had half written."""
         with self._writable():
@@ -185,27 +205,6 @@ def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, pa.T
     """(first trial, table) of shards, in order."""
     for (first, _), path in sorted(shards.items()):
         yield first, pq.read_table(path)
-
-
-def missing(spans: list[tuple[int, int]], total: int, size: int) -> list[tuple[int, int]]:
-    """(first, last) of what spans leave of trials 0..total-1, cut into pieces of ``size``.
-
-    >>> missing([(0, 3), (6, 7)], 12, 3)
-    [(4, 5), (8, 9), (10, 11)]
-    """
-    gaps: list[tuple[int, int]] = []
-    at = 0
-    for first, last in [*sorted(spans), (total, total)]:
-        gaps += _cut(at, min(first, total), size)
-        at = max(at, last + 1)
-    return gaps
-
-
-def _cut(first: int, end: int, size: int) -> list[tuple[int, int]]:
-    """Even pieces of first..end-1, none longer than ``size``."""
-    count = -(-(end - first) // size) if end > first else 0
-    edges = [first + (end - first) * k // count for k in range(count + 1)] if count else []
-    return [(a, b - 1) for a, b in pairwise(edges)]
 
 
 def read_document(folder: Path) -> dict[str, Any] | None:

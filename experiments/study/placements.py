@@ -18,7 +18,6 @@ from experiments.starts import Box, StartSet, draw_starts
 from experiments.study.config import StudyConfig
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
-from icage.errors import InputError
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
 
@@ -44,8 +43,6 @@ class Intended:
         if config.starts == "nominal":
             given = config.nominal
             self.nominal = roomiest(cage, config.seed) if given is None else np.array(given)
-            if not self.nominal[3] > 0.0:
-                raise InputError(f"nominal: sigma is {self.nominal[3]:g}; above 0 is needed")
 
     def placements(self, numbers: IntArray, streams: IntArray) -> FloatArray:
         """Placements (n, 4) with these numbers in these streams.

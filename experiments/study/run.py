@@ -12,8 +12,9 @@ import numpy as np
 import pyarrow as pa
 
 from experiments.intervals import stopped_at
-from experiments.study.folder import StudyFolder, missing, read_shards
+from experiments.study.folder import StudyFolder, read_shards
 from experiments.study.shard import Study, run_trials, table_of, target_trials
+from experiments.study.spans import missing
 from sim.engine import no_log
 
 SHARD: Final = 500
@@ -80,18 +81,26 @@ def run_study(
 
 
 def _whole(study: Study) -> Stopped:
+    total = study.design.total
     why = "all trials that were asked for"
+    if total > study.config.trials:
+        why = "base points are rounded up to a power of two"
     if study.config.until_half_width is not None:
         why += f"; the half width is not down to {study.config.until_half_width:g} yet"
-    return Stopped(False, study.design.total, why)
+    return Stopped(False, total, why)
 
 
 def _stop(study: Study, reached: Any) -> Stopped | None:
-    wanted = study.config.until_half_width
+    wanted, total = study.config.until_half_width, study.design.total
     if wanted is None:
         return None
-    at = stopped_at(reached[: study.design.total], wanted)
-    return None if at is None else Stopped(True, at, f"the half width is at most {wanted:g}")
+    at = stopped_at(reached[:total], wanted)
+    if at is None:
+        return None
+    enough = f"the half width is at most {wanted:g}"
+    if at == total:
+        return Stopped(False, at, f"all trials that were asked for; {enough}")
+    return Stopped(True, at, enough)
 
 
 class _Prefix:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import shlex
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,8 @@ from experiments.disc_case import physical_case
 from experiments.inputs import case_file
 from experiments.options import check_folder
 from experiments.progress import stage_bar
-from experiments.study.config import ConfigError, StudyConfig, read_toml, study_config
+from experiments.study.announced import announcement, warning
+from experiments.study.config import ConfigError, read_toml, study_config
 from experiments.study.document import differences, fingerprint, study_document, study_of
 from experiments.study.folder import (
     JSON,
@@ -27,7 +28,6 @@ from experiments.study.folder import (
 from experiments.study.run import Backend, on_threads, run_study
 from experiments.study.shard import Study
 from experiments.study.summary import sentence, summary
-from experiments.study.variables import VARIABLES
 from experiments.whole_files import whole_file
 from icage.formats.case_json import Case, read_case
 from models import case_paths, object_names
@@ -74,9 +74,7 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
     if old is None and resume and not table.get("case"):
         raise ConfigError(f"--out {out!r} holds no study to go on with")
     if old is not None and not table.get("case"):
-        if table:
-            raise ConfigError(f"{next(iter(table))} is given without a CASE")
-        study = study_of(old)
+        study = study_of(old, _only_trials(table))
     else:
         if not table.get("case"):
             raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
@@ -88,7 +86,25 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         lines = differences(old, document)
         if lines:
             raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}")
-    return Session(study, document, StudyFolder(path, fingerprint(document)), shard)
+    folder = StudyFolder(path, fingerprint(document))
+    kept = folder.beyond(study.design.total)
+    if kept:
+        raise ConfigError(
+            f"trials is {study.config.trials}, but --out {out!r} holds {kept} already, and none is "
+            f"thrown away; {kept} or more is needed, or another folder"
+        )
+    return Session(study, document, folder, shard)
+
+
+def _only_trials(table: Mapping[str, Any]) -> int | None:
+    """What may be said of a study that goes on without being told again."""
+    for name in table:
+        if name != "trials":
+            raise ConfigError(
+                f"{name} is given without a CASE: only trials may be; for anything else repeat the "
+                "whole command"
+            )
+    return table.get("trials")
 
 
 def _with_file(path: Path, over: Mapping[str, Any]) -> dict[str, Any]:
@@ -128,7 +144,10 @@ def run_session(
 def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     study, folder = session.study, session.folder
     total = study.design.total
-    print(_announcement(study), flush=True)
+    print(announcement(study, session.document), flush=True)
+    doubt = warning(session.document)
+    if doubt is not None:
+        print(f"icage: warning: {doubt}", file=sys.stderr, flush=True)
     folder.sweep()
     write_document({**session.document, "finished": False}, folder.path)
     with stage_bar() as bar:
@@ -150,19 +169,6 @@ def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     return lines
 
 
-def _announcement(study: Study) -> str:
-    design = study.design
-    what = ", ".join(design.names) or "nothing but the start"
-    line = f"{study.case.name}: {design.total} trials, varying {what}, seed {study.config.seed}"
-    if design.groups:
-        base = design.total // (len(design.groups) + 2)
-        line += (
-            f"; Saltelli's design, {base} base points x ({len(design.groups)} groups + 2) = "
-            f"{design.total} runs"
-        )
-    return line
-
-
 def _backend(session: Session, threads: int | None, scheduler: str | None) -> Backend:
     if scheduler is None:
         return on_threads(threads or cores())
@@ -180,34 +186,11 @@ def cores() -> int:
 
 
 def _write_page(document: dict[str, Any], folder: Path) -> None:
+    from experiments.study.command import command_line
     from experiments.study.results_md import results_page
 
     with whole_file(folder / PAGE) as part:
         part.write_text(results_page(document, command_line(document)), encoding="utf-8")
-
-
-def command_line(document: Mapping[str, Any]) -> str:
-    """The command that runs a study again, whatever it was given by."""
-    config, default = document["config"], StudyConfig(case="").document()
-    words = ["icage", "study", config["case"]]
-    if any(VARIABLES[name].group == "placement" for name in config["vary"]):
-        del default["starts"]  # it would be nominal
-    for name, value in config.items():
-        if name in ("case", "vary") or value is None or value == default.get(name):
-            continue
-        text = ",".join(map(repr, value)) if isinstance(value, (list, tuple)) else str(value)
-        option = f"--{name.replace('_', '-')}"
-        words += [f"{option}={text}"] if text.startswith("-") else [option, text]
-    for name, one in config["vary"].items():
-        words += ["--vary", f"{name}={_written(one)}"]
-    return " ".join(shlex.quote(word) for word in [*words, "--out", "DIR"])
-
-
-def _written(one: Mapping[str, Any]) -> str:
-    numbers = [repr(value) for value in one["parameters"]]
-    if one["kind"] == "grid":
-        return "grid:" + ",".join(numbers)
-    return ":".join([one["kind"], *numbers])
 
 
 def _draw(study: Study, document: dict[str, Any], table: Any, folder: Path) -> None:

@@ -16,7 +16,7 @@ from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.placements import Intended, collides, moved
 from experiments.study.variants import Key, Variant, Variants
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.formats.case_json import Case
 from icage.membership import COLLIDES, VERDICTS, Answers, query
@@ -261,7 +261,7 @@ def _known(values: FloatArray) -> pa.Array:
     return pa.array(np.ascontiguousarray(values), mask=np.isnan(values))
 
 
-def target_trials(table: pa.Table) -> IntArray:
+def target_trials(table: pa.Table) -> BoolArray:
     """(n,) whether each trial ended in the target."""
     words = table["outcome"].to_pylist()
     return np.array([word == OUTCOMES[TARGET] for word in words], dtype=np.bool_)

@@ -40,6 +40,10 @@ WORDS: Final = {
 """Every variable, and the group of Saltelli's design that has the placement in it."""
 
 
+_COUNTS: Final = ("trials", "closed", "target")
+"""Of a bin."""
+
+
 def display(one: Variable, unit: str) -> tuple[float, str]:
     """Factor from the unit in which a variable is kept to the one it is shown in, and that unit.
 
@@ -83,12 +87,13 @@ def merged(bins: Sequence[Mapping[str, Any]], most: int) -> list[Mapping[str, An
 
 
 def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    trials, target = (sum(one[key] for one in bins) for key in ("trials", "target"))
+    trials, closed, target = (sum(one[key] for one in bins) for key in _COUNTS)
     return {
         "low": bins[0]["low"],
         "high": bins[-1]["high"],
         "mean": sum(one["mean"] * one["trials"] for one in bins) / trials,
         "trials": trials,
+        "closed": closed,
         "target": target,
-        "rate_95": list(wilson(target, trials)),
+        "rate_95": list(wilson(target, closed)) if closed else None,
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any, Final
 
@@ -15,7 +15,6 @@ from experiments.study.design import Design
 from experiments.study.indices import sobol, split
 from experiments.study.shard import STUDY_OUTCOMES, target_trials
 from experiments.study.shown import percent
-from experiments.study.variables import VARIABLES, own_unit
 from icage.arrays import BoolArray, FloatArray
 from icage.membership import VERDICTS
 
@@ -25,8 +24,11 @@ BINS: Final = 10
 _STREAM: Final = 15
 """Of the random numbers of bootstrap intervals."""
 
+_ENDS: Final = ("target", "other_grasp", "escaped")
+"""Outcomes that are counted per verdict of the planner."""
+
 LISTED: Final = 50
-"""Failed trials named in ``study.json``; the table has all."""
+"""Failed closings named in ``study.json``; the table has all."""
 
 
 def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, Any]:
@@ -34,39 +36,51 @@ def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, A
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
     count = len(reached)
+    closed = ~np.isin(outcomes, STUDY_OUTCOMES[-3:])
     alone = independent(design, count)
-    low, high = wilson(int(reached[alone].sum()), int(alone.sum()))
-    clear = ~np.isin(outcomes, STUDY_OUTCOMES[-3:])
-    failed = np.flatnonzero(~reached)
+    failed = np.flatnonzero(closed & ~reached)
     found: dict[str, Any] = {
         "trials": count,
         "outcomes": {name: int((outcomes == name).sum()) for name in STUDY_OUTCOMES},
-        "target_rate": float(reached[alone].mean()) if count else None,
-        "target_rate_95": [low, high],
-        "closed": int(clear.sum()),
-        "target_rate_of_closed": float(reached[clear].mean()) if clear.any() else None,
-        "target_rate_of_closed_95": list(wilson(int(reached[clear].sum()), int(clear.sum()))),
+        "closed": int(closed.sum()),
+        **_rates(reached[alone], closed[alone]),
         "grasps": _grasps(table, outcomes),
-        "verdicts": list(_verdicts(table, outcomes, reached)),
+        "verdicts": list(_verdicts(table, outcomes, closed)),
         "position_error_max": _of(table, "position_error", reached, np.max),
         "angle_error_max": _of(table, "angle_error", reached, np.max),
-        "peak_force_median": _of(table, "peak_force", clear, np.median),
-        "peak_force_max": _of(table, "peak_force", clear, np.max),
-        "penetration_max": _of(table, "penetration_max", clear, np.max),
-        "penetration_rest_max": _of(table, "penetration_rest", clear, np.max),
-        "steps_mean": _of(table, "steps", clear, np.mean),
+        "peak_force_median": _of(table, "peak_force", closed, np.median),
+        "peak_force_max": _of(table, "peak_force", closed, np.max),
+        "penetration_max": _of(table, "penetration_max", closed, np.max),
+        "penetration_rest_max": _of(table, "penetration_rest", closed, np.max),
+        "steps_mean": _of(table, "steps", closed, np.mean),
         "failed": len(failed),
         "failed_trials": table["trial"].to_numpy()[failed[:LISTED]].tolist(),
-        "variables": {name: _variable(config, name, table, reached) for name in design.names},
-    }
+        "variables": {
+            name: _variable(config, name, table[name].to_numpy()[alone], reached[alone],
+                            closed[alone])
+            for name in design.names
+        },
+    }  # fmt: skip
     if config.sampling == "saltelli":
         found["indices"] = _indices(design, reached)
     return found
 
 
+def _rates(reached: BoolArray, closed: BoolArray) -> dict[str, Any]:
+    """Rates of the target with their intervals, of independent trials (n)."""
+    trials, shut, target = len(reached), int(closed.sum()), int(reached.sum())
+    return {
+        "independent": {"trials": trials, "closed": shut, "target": target},
+        "target_rate": target / trials if trials else None,
+        "target_rate_95": list(wilson(target, trials)) if trials else None,
+        "target_rate_of_closed": target / shut if shut else None,
+        "target_rate_of_closed_95": list(wilson(target, shut)) if shut else None,
+    }
+
+
 def independent(design: Design, count: int) -> BoolArray:
     """Which of the first ``count`` trials share no input with another: rows A and B of Saltelli's
-    design, all trials of any other. Only they give a rate its interval.
+    design, all trials of any other. Only they give a rate, and its interval.
     """
     if not design.groups:
         return np.ones(count, dtype=np.bool_)
@@ -79,8 +93,8 @@ def _grasps(table: pa.Table, outcomes: Any) -> dict[str, int]:
     return {str(k): int((ids == k).sum()) for k in np.unique(ids).tolist()}
 
 
-def _verdicts(table: pa.Table, outcomes: Any, reached: BoolArray) -> Iterator[dict[str, Any]]:
-    """What the planner said of the starts, and what became of them."""
+def _verdicts(table: pa.Table, outcomes: Any, closed: BoolArray) -> Iterator[dict[str, Any]]:
+    """What the planner said of the planned hand at the starts, and what became of the true one."""
     verdict = np.array(table["verdict"].to_pylist())
     caged = table["in_cage"].to_numpy(zero_copy_only=False)
     for name in VERDICTS:
@@ -91,9 +105,8 @@ def _verdicts(table: pa.Table, outcomes: Any, reached: BoolArray) -> Iterator[di
                     "verdict": name,
                     "in_cage": in_cage,
                     "trials": int(here.sum()),
-                    "target": int(reached[here].sum()),
-                    "other_grasp": int((outcomes[here] == "other_grasp").sum()),
-                    "escaped": int((outcomes[here] == "escaped").sum()),
+                    "closed": int(closed[here].sum()),
+                    **{word: int((outcomes[here] == word).sum()) for word in _ENDS},
                 }
 
 
@@ -104,27 +117,28 @@ def _of(table: pa.Table, name: str, rows: BoolArray, how: Any) -> float | None:
 
 
 def _variable(
-    config: StudyConfig, name: str, table: pa.Table, reached: BoolArray
+    config: StudyConfig, name: str, values: FloatArray, reached: BoolArray, closed: BoolArray
 ) -> dict[str, Any]:
-    """Rate of the target over the values of one variable: per grid value, else per decile."""
-    values = table[name].to_numpy()
+    """Rate of the target over the values (n,) of one variable: per grid value, else per decile."""
     if config.vary[name].kind == "grid":
         groups = [values == v for v in sorted(set(config.vary[name].parameters))]
     else:
         rank = np.empty(len(values), dtype=np.int64)
         rank[np.argsort(values, kind="stable")] = np.arange(len(values))
         groups = [rank * BINS // max(len(values), 1) == k for k in range(BINS)]
-    return {"bins": [_bin(values[g], reached[g]) for g in groups if g.any()]}
+    return {"bins": [_bin(values[g], reached[g], closed[g]) for g in groups if g.any()]}
 
 
-def _bin(values: FloatArray, reached: BoolArray) -> dict[str, Any]:
+def _bin(values: FloatArray, reached: BoolArray, closed: BoolArray) -> dict[str, Any]:
+    shut, target = int(closed.sum()), int(reached.sum())
     return {
         "low": float(values.min()),
         "high": float(values.max()),
         "mean": float(values.mean()),
-        "trials": len(reached),
-        "target": int(reached.sum()),
-        "rate_95": list(wilson(int(reached.sum()), len(reached))),
+        "trials": len(values),
+        "closed": shut,
+        "target": target,
+        "rate_95": list(wilson(target, shut)) if shut else None,
     }
 
 
@@ -136,15 +150,12 @@ def _indices(design: Design, reached: BoolArray) -> dict[str, Any]:
 
 
 def sentence(found: dict[str, Any], what: str) -> str:
-    """The bottom line."""
+    """The bottom line: of independent trials alone, as a rate is."""
     low, high = found["target_rate_95"]
-    reached = found["outcomes"]["target"]
+    one = found["independent"]
+    few = one["trials"] < found["trials"]
+    kind, of = ("independent trials", f" (of {found['trials']} run)") if few else ("trials", "")
     return (
-        f"{reached} of {found['trials']} trials of {what} ended in the target grasp: "
+        f"{one['target']} of {one['trials']} {kind} of {what}{of} ended in the target grasp: "
         f"{percent(found['target_rate'])} (95 %: {percent(low)} to {percent(high)})"
     )
-
-
-def units(names: Sequence[str], unit: str) -> dict[str, str]:
-    """Unit of every variable's column."""
-    return {name: own_unit(VARIABLES[name], unit) for name in names}

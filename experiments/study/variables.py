@@ -13,18 +13,29 @@ Measure = Literal["length", "angle", "ratio"]
 
 GROUPS: Final = ("placement", "contact", "table", "object", "shape", "hand")
 
+PERCENT: Final = 0.01
+
+DEGREE: Final = math.pi / 180.0
+"""[rad]"""
+
 _LENGTHS: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
-_ANGLES: Final = {"": 1.0, "rad": 1.0, "deg": math.pi / 180.0}
+_ANGLES: Final = {"": 1.0, "rad": 1.0, "deg": DEGREE}
+
+_ROUNDING: Final = 1e-12
+"""[1] A bound in diameters, converted, may be off by this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One uncertain input. Lengths in the case's unit, angles in [rad], ratios in [1].
+    """One uncertain input. Nominal values of lengths are 0, angles in [rad], ratios in [1].
 
     Attributes
     ----------
     low, high:
-        Physical range; a distribution must lie in it.
+        Physical range, lengths in [diameter]; a distribution must lie in it.
+    tails:
+        Whether a normal distribution may vary it: what lies beyond four standard deviations may
+        then be out of range.
     geometry:
         Whether it changes what is compiled: outline, discs or linkage.
     """
@@ -36,26 +47,35 @@ class Variable:
     low: float
     high: float
     help: str
+    tails: bool = False
     geometry: bool = False
 
+    def range_in(self, diameter: float) -> tuple[float, float]:
+        """The range in the unit of the diameter, [rad] or [1]."""
+        scale = diameter if self.measure == "length" else 1.0
+        return scale * self.low, scale * self.high
 
-_ANY = (-math.inf, math.inf)
+
+_FAR = (-10.0, 10.0)
+_TURN = (-2.0 * math.pi, 2.0 * math.pi)
 
 VARIABLES: Final = {
     one.name: one
     for one in (
-        Variable("place_x", "placement", "length", 0.0, *_ANY,
-                 "the hand stands off its place by this, along the object's x axis"),
-        Variable("place_y", "placement", "length", 0.0, *_ANY, "... along the object's y axis"),
-        Variable("place_theta", "placement", "angle", 0.0, *_ANY,
-                 "the hand is turned by this about the middle of its fingers"),
-        Variable("place_sigma", "placement", "length", 0.0, *_ANY,
-                 "the hand is open wider by this, its middle kept"),
-        Variable("bias_x", "placement", "length", 0.0, *_ANY,
-                 "the sensor sees the object off by this, along its x axis"),
-        Variable("bias_y", "placement", "length", 0.0, *_ANY, "... along its y axis"),
-        Variable("bias_theta", "placement", "angle", 0.0, *_ANY,
-                 "... turned by this about its centroid"),
+        Variable("place_x", "placement", "length", 0.0, *_FAR,
+                 "the hand stands off its place by this, along the object's x axis", True),
+        Variable("place_y", "placement", "length", 0.0, *_FAR,
+                 "the hand stands off its place by this, along the object's y axis", True),
+        Variable("place_theta", "placement", "angle", 0.0, *_TURN,
+                 "the hand is turned by this about the middle of its fingers", True),
+        Variable("place_sigma", "placement", "length", 0.0, *_FAR,
+                 "the hand is open wider by this, its middle kept", True),
+        Variable("bias_x", "placement", "length", 0.0, *_FAR,
+                 "the sensor sees the object off by this, along its x axis", True),
+        Variable("bias_y", "placement", "length", 0.0, *_FAR,
+                 "the sensor sees the object off by this, along its y axis", True),
+        Variable("bias_theta", "placement", "angle", 0.0, *_TURN,
+                 "the sensor sees the object turned by this about its centroid", True),
         Variable("friction", "contact", "ratio", 0.0, 0.0, 5.0,
                  "Coulomb coefficient between fingers and object"),
         Variable("softness", "contact", "ratio", 1.0, 1.0, 200.0,
@@ -63,32 +83,37 @@ VARIABLES: Final = {
         Variable("table_friction", "table", "ratio", 0.0, 0.0, 1.0,
                  "largest friction force of the table on the object, per axis, over the closing "
                  "force"),
-        Variable("tilt", "table", "angle", 0.0, 0.0, 0.5 * math.pi, "of the table"),
-        Variable("tilt_direction", "table", "angle", -0.5 * math.pi, *_ANY,
-                 "downhill, from the object's x axis as it lies at the start"),
+        Variable("tilt", "table", "angle", 0.0, 0.0, 0.5 * math.pi, "slope of the table"),
+        Variable("tilt_direction", "table", "angle", -0.5 * math.pi, *_TURN,
+                 "direction of downhill, from the object's x axis as it lies at the start", True),
         Variable("weight", "table", "ratio", 0.2, 0.0, 10.0,
-                 "of the object over the closing force; matters on a tilted table"),
-        Variable("mass", "object", "ratio", 1.0, 0.01, 100.0, "over the usual one; weight goes "
-                 "with it"),
+                 "weight of the object over the closing force; matters on a tilted table"),
+        Variable("mass", "object", "ratio", 1.0, 0.01, 100.0,
+                 "mass of the object over the usual one; its weight goes with it"),
         Variable("inertia", "object", "ratio", 1.0, 0.01, 100.0,
-                 "moment of inertia over that of an even plate of this mass"),
-        Variable("com_x", "object", "length", 0.0, *_ANY,
-                 "centre of mass off the area centroid, along the object's x axis"),
-        Variable("com_y", "object", "length", 0.0, *_ANY, "... along its y axis"),
+                 "moment of inertia of the object over that of an even plate of its mass"),
+        Variable("com_x", "object", "length", 0.0, -1.0, 1.0,
+                 "centre of mass off the area centroid, along the object's x axis", True),
+        Variable("com_y", "object", "length", 0.0, -1.0, 1.0,
+                 "centre of mass off the area centroid, along the object's y axis", True),
         Variable("outline_scale", "shape", "ratio", 1.0, 0.5, 2.0,
-                 "true size of the object over the planned one, about its centroid", True),
-        Variable("outline_noise", "shape", "length", 0.0, 0.0, math.inf,
-                 "root mean square of a smooth displacement of the boundary", True),
-        Variable("finger_radius", "hand", "length", 0.0, *_ANY,
-                 "error of the finger radius", True),
-        Variable("phi_1", "hand", "angle", 0.0, *_ANY,
-                 "error of the hand's angle at finger 1", True),
-        Variable("phi_2", "hand", "angle", 0.0, *_ANY,
-                 "error of the hand's angle at finger 2", True),
-        Variable("linkage_play", "hand", "length", 0.0, 0.0, math.inf,
-                 "how far a finger yields under the closing force", True),
+                 "true size of the object over the planned one, about its centroid",
+                 geometry=True),
+        Variable("outline_noise", "shape", "length", 0.0, 0.0, 0.05,
+                 "root mean square of a smooth displacement of the boundary", geometry=True),
+        Variable("finger_radius", "hand", "length", 0.0, -1.0, 1.0,
+                 "error of the finger radius; a disc must be left", True, geometry=True),
+        Variable("phi_1", "hand", "angle", 0.0, -0.5, 0.5,
+                 "error of the hand's angle at finger 1; a triangle must be left", True,
+                 geometry=True),
+        Variable("phi_2", "hand", "angle", 0.0, -0.5, 0.5,
+                 "error of the hand's angle at finger 2; a triangle must be left", True,
+                 geometry=True),
+        Variable("linkage_play", "hand", "length", 0.0, 0.0, 0.1,
+                 "how far a finger yields under the closing force", geometry=True),
         Variable("speed", "hand", "ratio", 1.0, 0.02, 50.0, "closing speed over the usual one"),
-        Variable("force", "hand", "ratio", 1.0, 0.02, 50.0, "of the motor over the usual one"),
+        Variable("force", "hand", "ratio", 1.0, 0.02, 50.0,
+                 "force of the motor over the usual one"),
     )
 }  # fmt: skip
 
@@ -123,16 +148,27 @@ def read_variable(name: str, given: object, unit: str, diameter: float) -> dict[
         found = parse_distribution(given, one.nominal, convert)
     except DistributionError as error:
         raise VariableError(f"vary.{name}: {error}") from error
-    if not (one.low <= found.low and found.high <= one.high):
-        outside = (
-            "a normal distribution has no bounds; use truncated:MEAN:SD:LOW:HIGH"
-            if found.kind == "normal"
-            else f"found {found.low:g} to {found.high:g}"
-        )
-        raise VariableError(
-            f"vary.{name}: {outside}; {_allowed(one)} [{own_unit(one, unit)}] is allowed"
-        )
+    _check_range(one, found, unit, diameter)
     return {name: found}
+
+
+def _check_range(one: Variable, found: Distribution, unit: str, diameter: float) -> None:
+    """Refuse values that no hand, object or table has."""
+    low, high = one.range_in(diameter)
+    least, most = found.reach if one.tails else (found.low, found.high)
+    slack = _ROUNDING * diameter if one.measure == "length" else 0.0
+    if low - slack <= least and most <= high + slack:
+        return
+    if found.kind != "normal":
+        outside = f"found {least:g} to {most:g}"
+    elif one.tails:
+        outside = f"its mean and four standard deviations reach from {least:g} to {most:g}"
+    else:
+        outside = "a normal distribution has no bounds; use truncated:MEAN:SD:LOW:HIGH"
+    share = f" ({_written_range(one)} of the diameter)" if one.measure == "length" else ""
+    raise VariableError(
+        f"vary.{one.name}: {outside}; {low:g} to {high:g} [{own_unit(one, unit)}]{share} is allowed"
+    )
 
 
 def own_unit(one: Variable, unit: str) -> str:
@@ -140,17 +176,25 @@ def own_unit(one: Variable, unit: str) -> str:
     return {"length": unit, "angle": "rad", "ratio": "1"}[one.measure]
 
 
-def _allowed(one: Variable) -> str:
-    if math.isinf(one.high):
-        return f"{one.low:g} or more"
-    return f"{one.low:g} to {one.high:g}"
+def _written_range(one: Variable) -> str:
+    """The allowed range as numbers of a distribution."""
+    if one.measure == "length":
+        return f"{one.low / PERCENT:g}% to {one.high / PERCENT:g}%"
+    if one.measure == "ratio":
+        return f"{one.low:g} to {one.high:g}"
+    return " to ".join(_written_angle(end) for end in (one.low, one.high))
+
+
+def _written_angle(value: float) -> str:
+    degrees = value / DEGREE
+    return f"{degrees:g}deg" if degrees == round(degrees) else f"{value:g}rad"
 
 
 def _converted(one: Variable, number: float, suffix: str, unit: str, diameter: float) -> float:
     """A number with a unit in the variable's own; % of the diameter, or of 1."""
     if one.measure == "length":
         if suffix == "%":
-            return 0.01 * number * diameter
+            return PERCENT * number * diameter
         if suffix == "":
             return number
         if suffix in _LENGTHS:
@@ -162,7 +206,7 @@ def _converted(one: Variable, number: float, suffix: str, unit: str, diameter: f
         allowed = "deg or rad"
     else:
         if suffix in ("", "%"):
-            return number * (0.01 if suffix else 1.0)
+            return number * (PERCENT if suffix else 1.0)
         allowed = "none or %"
     raise DistributionError(f"unit {suffix!r} after {number:g}; {allowed} is allowed")
 
@@ -174,9 +218,12 @@ def listing() -> list[str]:
         lines.append(f"{group}:")
         for one in (v for v in VARIABLES.values() if v.group == group):
             unit = own_unit(one, "length")
-            lines.append(f"  {one.name:<16} [{unit}] {one.help} (nominal {one.nominal:.4g})")
+            usual = _written_angle(one.nominal) if one.nominal < 0.0 else f"{one.nominal:g}"
+            allowed = f"nominal {usual}, allowed {_written_range(one)}"
+            lines.append(f"  {one.name:<16} [{unit}] {one.help} ({allowed})")
     lines.append(f"pairs: {', '.join(f'{k} = {a}, {b}' for k, (a, b) in PAIRS.items())}")
     lines.append("a distribution is VALUE, LOW:HIGH, normal:SD, normal:MEAN:SD,")
     lines.append("truncated:MEAN:SD:LOW:HIGH, grid:A,B,C or grid:LOW:HIGH:COUNT; numbers may carry")
-    lines.append("mm, cm, m (or % of the diameter), deg, rad, % (of 1)")
+    lines.append("mm, cm, m (or % of the diameter), deg, rad, % (of 1). normal is for what may be")
+    lines.append("negative: its mean and four standard deviations must lie in the range")
     return lines

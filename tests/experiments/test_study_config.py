@@ -16,13 +16,14 @@ from hypothesis import strategies as st
 from experiments.cli import parser
 from experiments.commands.study import _given
 from experiments.disc_case import PhysicalCase, physical_case
+from experiments.study.command import command_line
 from experiments.study.config import FIELDS, ConfigError, StudyConfig, read_toml, study_config
 from experiments.study.distributions import Distribution, DistributionError, parse_distribution
 from experiments.study.fields import HELP
-from experiments.study.session import command_line, session_of
+from experiments.study.session import session_of
 from experiments.study.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
 from icage.errors import InputError
-from icage.formats.case_json import Case
+from icage.formats.case_json import Case, read_case
 from models import CASES
 from tests.cli.runner import here
 from tests.experiments.small import cage_of, t_case, write_case
@@ -65,6 +66,12 @@ FORMS = [
     ("friction", "GRID:0.2", "grid", (0.2,)),
     ("place_x", "normal:2mm", "normal", (0.0, 2.0)),
     ("place_x", "normal:1:0.1cm", "normal", (1.0, 1.0)),
+    ("bias_x", "normal:2%", "normal", (0.0, 0.02 * SIZE)),
+    ("place_x", "-1000%:1000%", "uniform", (-10.0 * SIZE, 10.0 * SIZE)),
+    ("phi_1", "normal:0:1deg", "normal", (0.0, np.deg2rad(1.0))),
+    ("phi_2", "normal:7deg", "normal", (0.0, np.deg2rad(7.0))),
+    ("com_x", "normal:0:2%", "normal", (0.0, 0.02 * SIZE)),
+    ("linkage_play", "0:10%", "uniform", (0.0, 0.1 * SIZE)),
     ("place_x", "-1%:1%", "uniform", (-0.01 * SIZE, 0.01 * SIZE)),
     ("place_x", "-0.003 m : 0.3cm", "uniform", (-3.0, 3.0)),
     ("place_theta", "normal:2deg", "normal", (0.0, np.deg2rad(2.0))),
@@ -106,6 +113,9 @@ def test_nominal_values_lie_in_the_physical_range_and_every_group_is_listed():
     lines = "\n".join(listing())
     assert all(f"  {name} " in lines for name in VARIABLES)
     assert all(pair in lines for pair in PAIRS)
+    assert "nominal 0, allowed 0 to 5)" in lines
+    assert "nominal -90deg, allowed -360deg to 360deg)" in lines
+    assert "nominal 0, allowed 0% to 10%)" in lines
 
 
 def test_every_field_has_help_and_the_document_holds_every_field():
@@ -224,10 +234,19 @@ def test_what_is_written_down_is_read_again(one: Distribution):
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        (["--nominal=-1.5,2,-0.25,3"], ["--nominal=-1.5,2.0,-0.25,3.0"]),
+        (["--nominal=-1.5,2,-0.25,3"], ["--nominal=-1.5,2,-0.25,3"]),
         (["--starts", "guaranteed", "--vary", "place_x=0:1"], ["--starts", "guaranteed"]),
         (["--until-half-width", "0.01"], ["--until-half-width", "0.01"]),
         (["--trials", "7", "--uncaged", "skip"], ["--trials", "7", "--uncaged", "skip"]),
+        (["--vary", "place_theta=-8deg:8deg"], ["place_theta=-8deg:8deg"]),
+        (["--vary", "tilt=0.3"], ["tilt=0.3rad"]),
+        (["--vary", "tilt_direction=normal:10deg"], ["tilt_direction=normal:-90deg:10deg"]),
+        (["--vary", "phi_1=grid:-1deg,0.1rad"], ["phi_1=grid:-1deg,0.1rad"]),
+        (["--vary", "place_x=-2%:2%"], ["place_x=-2%:2%"]),
+        (["--vary", "place_y=-2:0.1"], ["place_y=-2:0.1"]),
+        (["--vary", "friction=uniform:30%:0.80"], ["friction=0.3:0.8"]),
+        (["--vary", "mass=fixed:2.0"], ["mass=2"]),
+        (["--vary", "mass=truncated:1:0.1:50%:2"], ["mass=truncated:1:0.1:0.5:2"]),
     ],
 )
 def test_the_printed_command_runs_the_same_study(
@@ -281,9 +300,22 @@ BAD_VARY = [
     ("mass=0:1", "vary.mass", "0.01 to 100"),
     ("softness=0.5", "vary.softness", "1 to 200"),
     ("outline_scale=3", "vary.outline_scale", "0.5 to 2"),
-    ("outline_noise=6%", "vary.outline_noise", "0.205244 mm"),
-    ("outline_noise=normal:1%", "vary.outline_noise", "0 or more [mm]"),
-    ("linkage_play=-1:1", "vary.linkage_play", "0 or more"),
+    ("outline_noise=6%", "vary.outline_noise", "0 to 0.205244 [mm] (0% to 5% of the diameter)"),
+    ("outline_noise=normal:1%", "vary.outline_noise", "truncated:MEAN:SD:LOW:HIGH"),
+    ("linkage_play=-1:1", "vary.linkage_play", "0 to 0.410488 [mm] (0% to 10% of the diameter)"),
+    ("linkage_play=1e9", "vary.linkage_play", "found 1e+09 to 1e+09; 0 to 0.410488 [mm]"),
+    ("linkage_play=normal:0.1%", "vary.linkage_play", "truncated:MEAN:SD:LOW:HIGH"),
+    ("com_x=1e6", "vary.com_x", "-4.10488 to 4.10488 [mm] (-100% to 100% of the diameter)"),
+    ("com_y=-1:101%", "vary.com_y", "-4.10488 to 4.10488 [mm]"),
+    ("com_y=normal:26%", "vary.com_y", "four standard deviations reach from -4.26907 to 4.26907"),
+    ("place_x=1e9", "vary.place_x", "-41.0488 to 41.0488 [mm] (-1000% to 1000%"),
+    ("place_sigma=0:11m", "vary.place_sigma", "-41.0488 to 41.0488 [mm]"),
+    ("place_xy=normal:300%", "vary.place_x", "-41.0488 to 41.0488 [mm]"),
+    ("bias_y=1001%", "vary.bias_y", "-41.0488 to 41.0488 [mm]"),
+    ("bias_theta=361deg", "vary.bias_theta", "-6.28319 to 6.28319 [rad]"),
+    ("finger_radius=101%", "vary.finger_radius", "-4.10488 to 4.10488 [mm]"),
+    ("phi_1=2", "vary.phi_1", "-0.5 to 0.5 [rad]"),
+    ("phi_2=normal:8deg", "vary.phi_2", "-0.5 to 0.5 [rad]"),
     ("finger_radius=-0.2:0", "vary.finger_radius", "-0.102211 mm or more"),
     ("finger_radius=-0.1026", "vary.finger_radius", "-0.102211 mm or more"),
     ("finger_radius=normal:0.01", "vary.finger_radius", "use truncated"),
@@ -327,6 +359,8 @@ def test_a_bad_input_gets_one_line(
         (["--nominal", "1,2,3"], ["--nominal", "X,Y,THETA,SIGMA"]),
         (["--nominal", "1,2,3,nan"], ["--nominal", "finite"]),
         (["--nominal=1,2,3,-1"], ["nominal", "above 0"]),
+        (["--nominal", "1e9,29,1.05,90"], ["nominal: finger", "41.0488 mm, 10 diameters"]),
+        (["--nominal", "0,0,0,100"], ["nominal: finger 2", "41.0488 mm, 10 diameters"]),
         (["--nominal", "1,2,3,1", "--starts", "cage"], ["nominal", "starts = 'cage'"]),
         (["--until-half-width", "0.6"], ["until_half_width", "up to 0.5"]),
         (["--until-half-width", "0.1", "--sampling", "sobol"], ["until_half_width", "random"]),
@@ -435,6 +469,23 @@ def test_a_file_and_the_command_line_add_up(tmp_path: Path):
     assert not (tmp_path / "out").exists()
 
 
+def test_errors_of_the_angles_must_leave_a_triangle():
+    """Also together: planned are 9.5 and 39.5 degrees, 20 and -15 more leave no angle between."""
+    thin = read_case(CASES / "tunnel_golden.json")
+
+    def check(**vary: str) -> None:
+        study_config({"case": "thin", "vary": vary}, thin)
+
+    for good in ({"phi_1": "0:20deg"}, {"phi_2": "-15deg:15deg"}, {"phi_1": "normal:0:1deg"}):
+        check(**good)
+    with pytest.raises(InputError, match=r"vary.phi_1: errors of -10 and 0 degrees .* 0 < phi_1"):
+        check(phi_1="-10deg:5deg")
+    with pytest.raises(InputError, match=r"phi = \(9.5, 39.5\) degrees, leave no triangle"):
+        check(phi_1="normal:3deg")
+    with pytest.raises(InputError, match=r"vary.phi_1 and vary.phi_2: errors of 20 and -15 deg"):
+        check(phi_1="0:20deg", phi_2="-15deg:0.1deg")
+
+
 def test_errors_of_point_fingers_are_those_of_the_discs_they_become(tmp_path: Path, capsys: Any):
     case = str(CASES / "T_best.json")
     given = {"case": case, "vary": {"finger_radius": "-1%:1%"}}
@@ -460,6 +511,12 @@ def test_errors_of_point_fingers_are_those_of_the_discs_they_become(tmp_path: Pa
 def test_no_bad_distribution_can_be_made(kind: Any, parameters: tuple[float, ...]):
     with pytest.raises(DistributionError):
         Distribution(kind, parameters)
+
+
+def test_help_says_what_is_not_obvious():
+    assert "rounds its base points up to a power of two" in HELP["trials"]
+    assert "random sampling only" in HELP["until_half_width"]
+    assert all("..." not in one.help for one in VARIABLES.values())
 
 
 def test_a_config_checks_itself_whoever_makes_it():

@@ -45,7 +45,14 @@ def test_the_page_says_the_bottom_line_first(folder: Path) -> None:
     page = (folder / "results.md").read_text()
     reached = document["found"]["outcomes"]["target"]
     assert page.splitlines()[2].startswith(f"**{reached} of 60 trials of T ended in the target")
-    for words in ("## Method", "## Command", "| friction [1] |", "replay-trial", "seed 0"):
+    for words in (
+        "## Method",
+        "## Command",
+        "| friction [1] |",
+        "replay-trial",
+        "## Friction of the fingers",
+        "seed 0",
+    ):
         assert words in page
     assert str(folder) not in page
 
@@ -53,8 +60,9 @@ def test_the_page_says_the_bottom_line_first(folder: Path) -> None:
 def test_a_page_without_failures_says_what_that_proves(folder: Path) -> None:
     document = document_of(folder)
     found = document["found"]
+    closed = found["closed"]
     found |= {"failed": 0, "failed_trials": [], "trials": 60}
-    assert "None of 60 failed" in results_page(document, "icage study t.json")
+    assert f"None of {closed} closings failed" in results_page(document, "icage study t.json")
 
 
 def test_the_same_study_gives_the_same_bytes(folder: Path, tmp_path: Path) -> None:

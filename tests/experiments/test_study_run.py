@@ -121,6 +121,59 @@ def test_more_trials_run_only_what_is_missing(study: Studied, monkeypatch: pytes
     assert asked == [(40, 79)]
 
 
+def test_more_trials_are_asked_for_without_the_case(folder: Path, study: Studied):
+    assert study.run("--trials", "50", "--shard", "20").code == 0
+    assert study.resume("--trials", str(TRIALS)).code == 0
+    study.check_same(left_alone(folder))
+    assert study.document["config"]["trials"] == TRIALS
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_fewer_trials_throw_nothing_away(
+    study: Studied, named: bool, monkeypatch: pytest.MonkeyPatch
+):
+    again = (lambda *o: study.run("--resume", *o)) if named else study.resume
+    assert study.run("--trials", "50").code == 0
+    before = study.files
+    line = again("--trials", "20").error_line()
+    assert "trials is 20, but --out" in line
+    assert "holds 50 already" in line
+    assert study.files == before
+    assert again("--trials", "50").code == 0
+
+
+def test_fewer_trials_than_the_shards_hold_are_refused(
+    study: Studied, monkeypatch: pytest.MonkeyPatch
+):
+    study.broken_off(monkeypatch, 2, "--trials", "60", "--shard", "20", "--threads", "1")
+    before = study.files
+    assert "holds 40 already" in study.resume("--trials", "39").error_line()
+    assert study.files == before
+    assert study.resume("--trials", "40").code == 0  # as many as there are: none is lost
+    assert len(study.table) == 40
+
+
+def test_shards_of_another_study_keep_nobody_from_fewer_trials(
+    study: Studied, monkeypatch: pytest.MonkeyPatch
+):
+    study.broken_off(monkeypatch, 2, "--trials", "60", "--shard", "20", "--threads", "1")
+    for path in study.shards:
+        pq.write_table(pq.read_table(path).replace_schema_metadata(None), path)
+    assert study.resume("--trials", "10").code == 0
+    assert len(study.table) == 10
+
+
+@pytest.mark.parametrize("option", [("--seed", "5"), ("--vary", "mass=2"), ("--max-time", "3")])
+def test_anything_else_needs_the_whole_command(study: Studied, option: tuple[str, str]):
+    assert study.run("--trials", "20").code == 0
+    before = study.files
+    line = study.resume("--trials", "40", *option).error_line()
+    name = option[0].removeprefix("--").replace("-", "_")
+    assert line.startswith(f"{name} is given without a CASE: only trials may be")
+    assert "repeat the whole command" in line
+    assert study.files == before
+
+
 def test_a_given_nominal_placement_is_resumed(study: Studied, monkeypatch: pytest.MonkeyPatch):
     nominal = ("--nominal", "2,2.5,0,1.5", "--trials", "20")
     assert study.run(*nominal).code == 0
@@ -140,6 +193,7 @@ def test_a_saltelli_study_is_resumed_from_another_folder(
     assert study.command("t.json", "--resume", *varied, *saltelli).code == 0
     longer = study.command("t.json", "--resume", *varied, "--sampling", "saltelli")
     assert "trials was 30, is 1000" in longer.error_line()
+    assert "trials was 30, is 1000" in study.resume("--trials", "1000").error_line()
 
 
 # ---------------------------------------------------------------------------- refused
@@ -252,6 +306,40 @@ def test_it_says_that_it_could_not_stop(study: Studied, often: None):
     result = study.run("--until-half-width", "0.01", "--trials", "40")
     assert "40 of 40 trials (all trials that were asked for; the half width is not" in result.out
     assert not study.document["stopped"]["early"]
+
+
+def test_stopping_at_the_last_trial_is_not_early(study: Studied, often: None):
+    result = study.run(*STOP, "--trials", "80")
+    why = "all trials that were asked for; the half width is at most 0.075"
+    assert f"80 of 80 trials ({why})" in result.out
+    assert study.document["stopped"] == {"early": False, "at": 80, "why": why}
+
+
+# ---------------------------------------------------------------------------- nominal placement
+
+
+@pytest.mark.parametrize(
+    ("nominal", "words"),
+    [("-0.1,1,0,0.2", "in collision with the object"), ("38,0,0.2,2", "not caged")],
+)
+def test_a_nominal_placement_outside_the_cage_is_told(study: Studied, nominal: str, words: str):
+    result = study.run(f"--nominal={nominal}", "--trials", "2", varied=())
+    assert f"nominal placement: {words}\n" in result.out
+    assert result.err == (
+        f"icage: warning: the nominal placement is not in the target's cage: {words}\n"
+    )
+    assert not study.document["nominal"]["in_cage"]
+    assert words in (study.path / "results.md").read_text()
+
+
+def test_a_nominal_placement_in_the_cage_has_a_margin(study: Studied):
+    result = study.run("--trials", "2", varied=("--vary", "place_x=0.01"))
+    one = study.document["nominal"]
+    assert one["in_cage"]
+    assert f"closing can end only in the target, margin {one['margin']:.4g} mm" in result.out
+    assert result.err == ""
+    page = (study.path / "results.md").read_text()
+    assert f"closing can end only in the target, margin {one['margin']:.4g} mm" in page
 
 
 # ---------------------------------------------------------------------------- run again
