@@ -20,8 +20,8 @@ LONGEST: Final = 40
 _OUTCOMES: Final = {
     "target": "in the target grasp",
     "other_grasp": "in another grasp of the plan",
-    "jammed": "at rest elsewhere, held by friction",
-    "unmatched": "at rest elsewhere, without friction",
+    "jammed": "at rest elsewhere, held by friction or weight",
+    "unmatched": "in a grasp that the plan does not have; no friction or weight holds it",
     "escaped": "the hand shut on nothing",
     "timed_out": "still moving when time was up",
     "diverged": "the engine gave up",
