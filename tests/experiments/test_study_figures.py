@@ -18,6 +18,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.text import Text
 
 from experiments.figures import figure_regions
+from experiments.intervals import wilson
 from experiments.study import figures, indices_figure
 from experiments.study.config import StudyConfig
 from experiments.study.design import Design
@@ -111,6 +112,10 @@ def regions() -> tuple[FingerRegion, ...]:
     return figure_regions(cage_of("T"))
 
 
+def panels(page: Page) -> list[Axes]:
+    return [axes for axes in page.figure.axes if axes.axison]
+
+
 def the_map(document: dict[str, Any], table: pa.Table) -> Page:
     with settings():
         return map_page(document, table, cage_of("T"), regions())
@@ -152,7 +157,7 @@ def test_every_variable_has_words():
 def test_rates_have_a_panel_per_varying_input_with_its_unit():
     document, _ = study()
     page = rates_page(document)
-    assert len(page.figure.axes) == 5
+    assert len(panels(page)) == 5
     text = words(page)
     assert "hand turned [°]" in text
     assert "3 values, 300 trials each" in text
@@ -160,6 +165,55 @@ def test_rates_have_a_panel_per_varying_input_with_its_unit():
     assert page.figure.axes[0].get_ylim()[0] == 0.0
     assert not any("not at 0" in line for line in text)
     assert_legible(page)
+
+
+def with_closings(document: dict[str, Any], closed: list[int], target: list[int]) -> None:
+    """Bins of friction, so many of 100 trials closed, so many of these in the target."""
+    found = document["found"]
+    found["variables"] = {
+        "friction": {
+            "bins": [
+                {"low": k, "high": k, "mean": k, "trials": 100, "closed": shut, "target": hit,
+                 "rate_95": list(wilson(hit, shut)) if shut else None}
+                for k, (shut, hit) in enumerate(zip(closed, target, strict=True))
+            ]
+        }
+    }  # fmt: skip
+    one = {"trials": 100 * len(closed), "closed": sum(closed), "target": sum(target)}
+    found |= {"trials": one["trials"], "closed": one["closed"], "independent": one}
+    found["outcomes"] |= {"target": one["target"], "collision": one["trials"] - one["closed"]}
+    interval = wilson(one["target"], one["closed"]) if one["closed"] else None
+    found["target_rate_of_closed_95"] = interval
+
+
+def test_a_start_that_was_not_closed_is_no_failure_of_the_grasp():
+    document, _ = study(100, vary={"friction": VARY["friction"]})
+    with_closings(document, [100, 40, 0], [100, 40, 0])
+    page = rates_page(document)
+    (axes,) = panels(page)
+    heights = sorted(patch.get_height() for patch in axes.patches)
+    assert heights == [0.0, 0.4, 1.0]
+    dots = [line.get_ydata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert dots == [1.0, 1.0]
+    text = " ".join(words(page))
+    assert "140 of 140 closings ended in the target" in text
+    assert "share of the trials that were closed" in text
+    assert "160 of 300 trials were not closed (a finger would start inside the object)" in text
+    assert_legible(page)
+
+
+def test_a_study_without_closings_has_no_rate():
+    document, _ = study(100, vary={"friction": VARY["friction"]})
+    with_closings(document, [0, 0], [0, 0])
+    page = rates_page(document)
+    assert "None of 200 trials was closed: there is no rate to show." in words(page)
+    assert not any(line.get_marker() == "o" for axes in page.figure.axes for line in axes.lines)
+
+
+def test_one_input_uses_the_page():
+    document, _ = study(100, vary={"tilt": VARY["tilt"]})
+    (axes,) = panels(rates_page(document))
+    assert axes.get_position().width > 0.85
 
 
 def test_angles_are_drawn_in_degrees():
@@ -173,7 +227,7 @@ def test_an_axis_that_does_not_start_at_0_says_so():
     page = rates_page(document)
     floor = page.figure.axes[0].get_ylim()[0]
     assert 0.9 <= floor < 1.0
-    assert f"The axes of the rate start at {floor:g}, not at 0." in words(page)
+    assert f"The axes start at {floor:g}, not at 0." in words(page)
     assert f"{floor:g}" in [t.get_text() for t in page.figure.axes[0].get_yticklabels()]
     assert_legible(page)
 
@@ -183,7 +237,7 @@ def test_all_inputs_at_once_are_legible():
             if v.low <= 0.1 and v.high >= 0.2}  # fmt: skip
     document, _ = study(100, vary=vary)
     page = rates_page(document)
-    assert len(page.figure.axes) == len(vary) > 20
+    assert len(panels(page)) == len(vary) > 20
     assert_legible(page)
 
 
