@@ -1,4 +1,4 @@
-"""What a study found, drawn. Here: which share of the closings ends in the target, over every input.
+"""What a study found, drawn. Here: which share of closings ends in the target, over every input.
 
 Where the hand may stand is drawn by ``experiments.study.map``, which input matters most by
 ``experiments.study.indices_figure``.
