@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 from collections import Counter
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -14,19 +15,22 @@ import pyarrow as pa
 import pytest
 import shapely
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 from matplotlib.text import Text
 
+from experiments.drawing.sheet import Bounds
 from experiments.figures import figure_regions
 from experiments.intervals import wilson
 from experiments.study import figures, indices_figure
+from experiments.study import map as study_map
 from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.distributions import Distribution
 from experiments.study.figures import draw_indices, draw_map, draw_rates
 from experiments.study.hexagons import bin_hexagons
-from experiments.study.map import CROSSES, map_page
-from experiments.study.pictures import Page, settings
+from experiments.study.map import CROSSES, Closings, map_page
+from experiments.study.map_layout import placed
+from experiments.study.pictures import WIDE, Page, settings
 from experiments.study.shown import WORDS, merged, percent
 from experiments.study.summary import summary
 from experiments.study.variables import VARIABLES
@@ -256,7 +260,7 @@ def test_the_map_shows_every_closing_and_says_what_it_leaves_out():
 
 
 def _hexagons(axes: Axes) -> list[Any]:
-    return [c for c in axes.collections if type(c) is PolyCollection]
+    return [c for c in axes.collections if type(c) is PathCollection]
 
 
 def test_a_small_cloud_gets_close_ups():
@@ -290,6 +294,76 @@ def test_a_map_without_closings_or_regions_is_drawn():
     with settings():
         page = map_page(document, table.slice(0, 0), cage_of("T"), ())
     assert "no caging regions: not a cage" in words(page)
+
+
+def test_a_map_without_closings_has_no_scale_of_colours():
+    document, table = study()
+    with_closings(document, [0, 0], [0, 0])
+    page = the_map(document, table.slice(0, 0))
+    text = words(page)
+    assert (
+        "None of 200 trials was closed: 200 with a finger inside the object at the start." in text
+    )
+    assert "share of closings in the target" not in text
+    assert not any("hexagon" in line for line in text)
+
+
+def test_no_hexagon_reaches_into_the_clearance_unless_a_start_does():
+    cage = cage_of("T")
+    _, table = study(spread=0.1, collisions=0)
+    closings = Closings.of(table, cage)
+    body, core = (cage.outline.polygon.buffer(k * cage.finger_radius) for k in (1.0, 0.98))
+    for finger in range(3):
+        points = closings.fingers[:, finger]
+        under = shapely.contains_xy(body, *points.T)
+        for some in (closings, Closings(closings.fingers[~under], closings.reached[~under])):
+            mine = some.fingers[:, finger]
+            bins = bin_hexagons(mine, some.reached, 0.05)
+            drawn = study_map._cells(some, finger, bins, cage, regions()).shapes
+            inside = shapely.area(shapely.intersection(list(drawn), core)) > 1e-9
+            may = bins.holding(shapely.contains_xy(body, *mine.T))
+            assert not (inside & ~may).any()
+            assert not shapely.is_empty(list(drawn)).any()
+
+
+def test_lines_that_cannot_be_told_apart_are_one_entry():
+    document, table = study()
+    cage = replace(cage_of("T"), sigma_max=1.0001 * cage_of("T").sigma_first)
+    first = [r for r in regions() if r.level_name == "sigma_first" or r.bound == "inner"][:3]
+    first = [replace(r, level_name="sigma_first", level=cage.sigma_first) for r in first]
+    near = [
+        replace(r, level_name="sigma_max", level=cage.sigma_max, geometry=r.geometry.buffer(1e-4))
+        for r in first
+    ]
+    with settings():
+        text = words(map_page(document, table, cage, [*first, *near]))
+    assert any("looks the same here" in line for line in text)
+    far = [replace(r, geometry=r.geometry.buffer(0.1 * cage.outline.diameter)) for r in near]
+    with settings():
+        text = words(map_page(document, table, cage, [*first, *far]))
+    assert not any("looks the same here" in line for line in text)
+
+
+@pytest.mark.parametrize("whole", [(0.0, 0.0, 4.0, 1.0), (0.0, 0.0, 1.0, 1.2)])
+@pytest.mark.parametrize("sides", [(0.1, 0.1), (0.1, 0.5), (0.5, 0.1), (0.02, 0.02)])
+def test_frames_of_close_ups_are_never_cut_off(whole: Bounds, sides: tuple[float, float]):
+    wide, tall = sides
+    sizes = [(wide, tall), (tall, wide), (tall, 0.5 * wide)]
+    at = [(0.0, 0.0), (whole[2], 0.5), (0.5, whole[3])]
+    windows = [
+        (x - 0.5 * w, y - 0.5 * h, x + 0.5 * w, y + 0.5 * h)
+        for (w, h), (x, y) in zip(sizes, at, strict=True)
+    ]
+    first, *others = placed(whole, windows)
+    frame = shapely.box(*first.window)
+    assert len({round(place.zoom, 9) for place in others}) == 1
+    page = [shapely.box(p.x, p.below - p.height, p.x + p.width, p.below) for p in (first, *others)]
+    for place, window in zip(others, windows, strict=True):
+        assert frame.buffer(1e-9).contains(shapely.box(*place.window))
+        assert shapely.box(*place.window).buffer(1e-9).contains(shapely.box(*window))
+        assert place.x + place.width <= WIDE - 13.9
+    for one, other in combinations(page, 2):
+        assert not one.intersects(other)
 
 
 def test_the_same_study_gives_the_same_bytes(tmp_path: Path):
