@@ -43,6 +43,15 @@ Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Recorded:
+    """Number of a recorded trial, and what the planner said of its start."""
+
+    index: int
+    verdict: str
+    in_cage: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Run:
     """One set of placements of one grasp, closed and judged."""
 
@@ -55,6 +64,8 @@ class Run:
     starts: Starts
     closings: ClosingOutcomes
     verdicts: Verdicts
+    recorded: Recorded | None = None
+    """Of a film of one recorded trial."""
 
     @property
     def counts(self) -> dict[str, int]:

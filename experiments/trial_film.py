@@ -6,7 +6,7 @@ from pathlib import Path
 
 from experiments.progress import stage_bar
 from experiments.recorded import Rerun, recorded_cage, recorded_regions
-from experiments.replay import Replay, Run
+from experiments.replay import Recorded, Replay, Run
 from experiments.starts import Starts
 from experiments.video import film
 from experiments.whole_files import whole_file
@@ -23,7 +23,10 @@ def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:
     cage = recorded_cage(trial)
     case = Case(row["grasp"], trial.run["unit"], trial.outline, cage.finger_radius, cage.contacts)
     starts = Starts(done.closings.start, 1)
-    run = Run(case, cage, cage, done.scene, row["set"], starts, done.closings, done.verdicts)
+    recorded = Recorded(trial.index, row["verdict"], row["set"] != "outside")
+    run = Run(
+        case, cage, cage, done.scene, row["set"], starts, done.closings, done.verdicts, recorded
+    )
     with stage_bar() as report, whole_file(path) as part:
         replay = Replay((run,), row["seed"])
         film(replay, case.name, {case.name: recorded_regions(trial)}, part, report, camera)

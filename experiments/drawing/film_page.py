@@ -37,6 +37,38 @@ _TITLE_WIDTH = 560.0
 """[pixel] of font size times characters: what fits the right column."""
 
 
+_ABOUT_WIDTH = 660.0
+"""[pixel] The same of the line below it, which is not bold."""
+
+_SETS: Final = {
+    "guaranteed": "guaranteed set",
+    "rest": "rest of the cage",
+    "outside": "outside the cage",
+    "study": "study",
+}
+"""Where starts were drawn from."""
+
+_STARTS: Final = {
+    "target": "by plan closes to the target",
+    "caged": "by plan caged, others in reach",
+    "other": "by plan held, not with the target",
+    "escapes": "by plan not caged",
+    "collision": "by plan in collision",
+}
+"""What the planner says of a start: of the planned hand, without friction."""
+
+_ENDS: Final = {
+    "target": "ended in the target grasp",
+    "other_grasp": "ended in another grasp of the plan",
+    "jammed": "jammed: at rest short of a grasp, held by friction",
+    "unmatched": "ended at rest in no grasp of the plan",
+    "escaped": "escaped: the hand shut on nothing",
+    "timed_out": "timed out: still moving at the end",
+    "diverged": "diverged: the engine gave up",
+}
+"""How a closing ended."""
+
+
 class Page:
     """The page for the clips of one run."""
 
@@ -57,11 +89,8 @@ class Page:
         title = _short(clip.run.case.name)
         size = min(24.0, _TITLE_WIDTH / len(title))
         canvas.text(_LEFT, 42.0, title, size, INK, bold=True)
-        about = "guaranteed set" if clip.run.which == "guaranteed" else "rest of the cage"
-        canvas.text(
-            _LEFT, 70.0, f"{about}, start {clip.trial + 1} of {len(clip.run.closings)}", 17.0,
-            QUIET_INK,
-        )  # fmt: skip
+        about = _about(clip)
+        canvas.text(_LEFT, 70.0, about, min(17.0, _ABOUT_WIDTH / len(about)), QUIET_INK)
         self._plots[number].draw_frame(canvas)
         self._forces[number].draw_frame(canvas)
         canvas.text(_LEFT, _OBJECT[1] - 9.0, "seen from the object", 15.0, INK)
@@ -105,30 +134,57 @@ def _force_plot(clip: Clip) -> Plot:
     return Plot(_FORCE, "finger forces over time", 1.0, (0.0, high))
 
 
+def _about(clip: Clip) -> str:
+    """The set that a start is from; of a recorded trial, what the planner says of its start."""
+    one = clip.run.recorded
+    if one is None:
+        return f"{_SETS[clip.run.which]}, start {clip.trial + 1} of {len(clip.run.closings)}"
+    away = one.verdict in ("target", "caged") and not one.in_cage
+    said = "by plan in another cage" if away else _STARTS[one.verdict]
+    return f"trial {one.index}: {said}"
+
+
+def _is_good(run: Run, outcome: str) -> bool:
+    """Whether a closing may end so: in another grasp only where others are within reach."""
+    sure = run.which == "guaranteed" if run.recorded is None else run.recorded.verdict == "target"
+    return outcome == "target" or (outcome == "other_grasp" and not sure)
+
+
 def _draw_badge(canvas: Canvas, clip: Clip) -> None:
     """Where this closing ended, in the corner of the main view."""
-    good = clip.outcome == "target" or (clip.outcome == "other_grasp" and clip.run.which == "rest")
     words = {"target": "target grasp", "other_grasp": "another grasp"}.get(
         clip.outcome, clip.outcome.replace("_", " ")
     )
-    canvas.box((20.0, 20.0, 40.0 + 11.5 * (len(words) + 2), 58.0), GOOD if good else BAD)
-    canvas.text(32.0, 46.0, f"{'✓' if good else '✗'} {words}", 19.0, PAPER, bold=True)
+    good = _is_good(clip.run, clip.outcome)
+    place, text = (32.0, 46.0), f"{'✓' if good else '✗'} {words}"
+    wide = canvas.text(*place, text, 19.0, PAPER, bold=True)  # how wide it is
+    canvas.box((20.0, 20.0, 44.0 + wide, 58.0), GOOD if good else BAD)
+    canvas.text(*place, text, 19.0, PAPER, bold=True)
 
 
-def _draw_caption(canvas: Canvas, run: Run) -> None:
+def headline(run: Run) -> tuple[str, bool]:
+    """How the closings of a run ended, in words, and whether each may end so."""
     counts, trials = run.counts, len(run.closings)
-    canvas.line([[20, MAIN[1] + 6], [WIDTH - 20, MAIN[1] + 6]], RULE, 1.2)
-    fine = counts["target"] == trials or (
-        run.which == "rest" and counts["target"] + counts["other_grasp"] == trials
-    )
+    fine = all(_is_good(run, name) for name, count in counts.items() if count)
+    if run.recorded is not None:
+        (outcome,) = (name for name, count in counts.items() if count)
+        return f"trial {run.recorded.index} {_ENDS[outcome]}", fine
     parts = [f"{counts['target']} of {trials} closings ended in the target grasp"]
     if counts["other_grasp"]:
         parts.append(f"{counts['other_grasp']} in another grasp")
     parts.append(f"{counts['escaped']} escaped")
-    lost = trials - counts["target"] - counts["other_grasp"] - counts["escaped"]
-    if lost:
-        parts.append(f"{lost} lost")
-    canvas.text(24.0, 674.0, ", ".join(parts), 21.0, INK if fine else BAD, bold=True)
+    parts += [
+        f"{counts[name]} {name.replace('_', ' ')}"
+        for name in ("jammed", "unmatched", "timed_out", "diverged")
+        if counts[name]
+    ]
+    return ", ".join(parts), fine
+
+
+def _draw_caption(canvas: Canvas, run: Run) -> None:
+    canvas.line([[20, MAIN[1] + 6], [WIDTH - 20, MAIN[1] + 6]], RULE, 1.2)
+    text, fine = headline(run)
+    canvas.text(24.0, 674.0, text, 21.0, INK if fine else BAD, bold=True)
     cage = run.cage
     levels = [
         rf"{name} = {significant(level / cage.sigma_0, level_digits(cage))} $\sigma_0$"

@@ -13,13 +13,15 @@ from icage.arrays import BoolArray, FloatArray, IntArray
 class Hexagons:
     """Bins (k): centres (k, 2), trials (k,) and how many of them were hits (k,).
 
-    ``width`` is from flat side to flat side, in the unit of the points.
+    ``width`` is from flat side to flat side, in the unit of the points; ``which`` (n,) the bin of
+    each of them.
     """
 
     width: float
     centres: FloatArray
     trials: IntArray
     hits: IntArray
+    which: IntArray
 
     @property
     def corners(self) -> FloatArray:
@@ -27,10 +29,9 @@ class Hexagons:
         turn = np.exp(1j * np.pi * (np.arange(6) / 3.0 + 0.5)) * self.width / np.sqrt(3.0)
         return self.centres[:, None] + np.column_stack([turn.real, turn.imag])
 
-    def with_at_least(self, fewest: int) -> Hexagons:
-        """The bins with so many trials."""
-        keep = self.trials >= fewest
-        return Hexagons(self.width, self.centres[keep], self.trials[keep], self.hits[keep])
+    def holding(self, some: BoolArray) -> BoolArray:
+        """Which bins (k,) hold any of some of the points (n,)."""
+        return np.bincount(self.which[some], minlength=len(self.trials)) > 0
 
 
 def bin_hexagons(points: FloatArray, hits: BoolArray, width: float) -> Hexagons:
@@ -52,4 +53,4 @@ def bin_hexagons(points: FloatArray, hits: BoolArray, width: float) -> Hexagons:
     which = which.reshape(-1)
     trials = np.bincount(which, minlength=len(places))
     found = np.bincount(which, weights=np.asarray(hits, dtype=np.float64), minlength=len(places))
-    return Hexagons(width, 0.5 * places * cell, trials, found.astype(np.int64))
+    return Hexagons(width, 0.5 * places * cell, trials, found.astype(np.int64), which)

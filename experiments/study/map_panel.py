@@ -9,23 +9,26 @@ from typing import Any, Final
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 from matplotlib.colors import Colormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, PathPatch, Rectangle
+from shapely.geometry.base import BaseGeometry
 
 from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
 from experiments.drawing.palette import Colour as Rgb
 from experiments.drawing.shapes import as_path, scale_bar_length, tidied
 from experiments.drawing.sheet import Bounds
-from experiments.study.hexagons import Hexagons
 from experiments.study.pictures import Page
-from icage.arrays import FloatArray
+from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
 from icage.regions import FingerRegion
 
 _DOT: Final = 2.6
 """[pt] Least radius of a finger."""
+
+PALE: Final = 0.35
+"""[1] Share of its colour that a hexagon of few closings has; the rest is white."""
 
 _HAIRLINE: Final = 0.4
 """[pt] Slits of the regions' inner bounds narrower than this are not drawn."""
@@ -34,6 +37,15 @@ _HAIRLINE: Final = 0.4
 def colours() -> Colormap:
     """Rates from 0 to 1: viridis, ever lighter, so that any kind of colour vision reads it."""
     return matplotlib.colormaps["viridis"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """Hexagons (k) as they are drawn, the rate in each (k,) and whether it is of few closings."""
+
+    shapes: Sequence[BaseGeometry]
+    rates: FloatArray
+    few: BoolArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +82,7 @@ def draw_panel(
     panel: Panel,
     cage: Cage,
     regions: Sequence[FingerRegion],
-    bins: Hexagons | None,
+    cells: Cells | None,
     crosses: FloatArray,
     meant: FloatArray,
 ) -> None:
@@ -85,14 +97,8 @@ def draw_panel(
     axes.set_yticks([])
     for spine in axes.spines.values():
         spine.set(color=QUIET_INK, linewidth=0.5)
-    if bins is not None and len(bins.trials):
-        faces = colours()(bins.hits / bins.trials)
-        axes.add_collection(
-            PolyCollection(
-                list(bins.corners), facecolors=faces, edgecolors=faces, lw=0.3, zorder=1
-            ),
-            autolim=False,
-        )
+    if cells is not None:
+        _draw_cells(axes, cells)
     path = as_path(cage.outline.polygon)
     axes.add_patch(PathPatch(path, fc=OBJECT_FILL, ec=OBJECT_EDGE, lw=0.8, zorder=2))
     for region in regions:
@@ -100,6 +106,15 @@ def draw_panel(
     _draw_target(axes, panel, cage)
     draw_crosses(axes, crosses)
     draw_meant(axes, meant)
+
+
+def _draw_cells(axes: Axes, cells: Cells) -> None:
+    faces = colours()(cells.rates)
+    faces[cells.few] = PALE * faces[cells.few] + (1.0 - PALE)
+    paths = [as_path(shape) for shape in cells.shapes]
+    axes.add_collection(
+        PathCollection(paths, facecolors=faces, edgecolors=faces, lw=0.3, zorder=1), autolim=False
+    )
 
 
 def draw_crosses(axes: Axes, places: FloatArray) -> None:

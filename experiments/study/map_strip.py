@@ -44,14 +44,18 @@ _WHY: Final = (
 def strip_words(document: Mapping[str, Any], width: float, fewest: int) -> list[str]:
     """Lines about the closings; hexagons ``width`` wide have ``fewest`` closings or more."""
     found, unit = document["found"], document["unit"]
-    text = (
-        f"{found['closed']:,} closings; {found['outcomes']['target']:,} ended in the target. The "
-        f"colour of a hexagon ({number(width, 2)} {unit} wide) is their share among the closings "
-        f"with this finger's start in it; with fewer than {fewest} it is left out."
-    )
     missing = [
         f"{found['outcomes'][name]:,} {words}" for name, words in _WHY if found["outcomes"][name]
     ]
+    if not found["closed"]:
+        why = f": {', '.join(missing)}" if missing else ""
+        return textwrap.wrap(f"None of {found['trials']:,} trials was closed{why}.", _LINE)
+    text = (
+        f"{found['closed']:,} closings; {found['outcomes']['target']:,} ended in the target. The "
+        f"colour of a hexagon ({number(width, 2)} {unit} wide) is their share among the closings "
+        f"with this finger's start in it, pale where these are fewer than {fewest}. Hexagons end "
+        "at the lines of the caging regions unless fingers started beyond."
+    )
     if missing:
         text += f" Not shown, as there was no closing: {', '.join(missing)}."
     return textwrap.wrap(text, _LINE)
@@ -60,9 +64,11 @@ def strip_words(document: Mapping[str, Any], width: float, fewest: int) -> list[
 def strip_keys(
     cage: Cage, regions: Sequence[FingerRegion], document: Mapping[str, Any], *, crosses: bool
 ) -> list[Key]:
-    """What is drawn over the hexagons."""
+    """What is drawn over the hexagons: ``regions`` are those that can be seen."""
     unit, digits = document["unit"], level_digits(cage)
     keys: list[Key] = [("target", "the target grasp")]
+    names = {region.level_name for region in regions}
+    same = "" if "sigma_first" not in names or len(names) > 1 else _the_same(cage, document)
     for name, level in sorted({(region.level_name, region.level) for region in regions}):
         symbol = _FIRST if name == "sigma_first" else _MAX
         if name != "sigma_first" and cage.sigma_first == cage.sigma_max:
@@ -71,6 +77,8 @@ def strip_keys(
         if name == "all":
             text = "where the object is caged: it never escapes"
         keys.append(("solid" if is_solid(cage, name) else "dashed", text))
+    if same:
+        keys.append(("", same))
     if not regions:
         keys.append(("", "no caging regions: not a cage"))
     if document.get("nominal") is not None:
@@ -80,27 +88,37 @@ def strip_keys(
     return keys
 
 
+def _the_same(cage: Cage, document: Mapping[str, Any]) -> str:
+    """Of regions too near those below sigma_first to be drawn beside them."""
+    if cage.sigma_max is None:
+        return "(that below any opening looks the same here)"
+    level = number(cage.sigma_max, level_digits(cage))
+    return f"(that below {_MAX} = {level} {document['unit']} looks the same here)"
+
+
 def strip_height(words: Sequence[str], keys: Sequence[Key]) -> float:
     """[pt] Height of the strip."""
     return MARGIN + ROW * len(words) + 20.0 + _KEY_ROW * max(len(keys), 3)
 
 
 def draw_strip(
-    page: Page, height: float, title: str, words: list[str], keys: Sequence[Key]
+    page: Page, height: float, title: str, words: list[str], keys: Sequence[Key], *, bar: bool
 ) -> None:
     """Title, lines, the bar of colours, the keys."""
     top = height - 12.0
     page.caption(top, title, words)
     top -= ROW * len(words) + 18.0
-    _draw_bar(page, top)
+    if bar:
+        _draw_bar(page, top)
+    left = _KEYS if bar else MARGIN
     axes = page.axes(0.0, 0.0, page.width, page.height, facecolor="none", zorder=-1)
     axes.set_axis_off()
     axes.set_xlim(0.0, page.width)
     axes.set_ylim(0.0, page.height)
     for k, (key, text) in enumerate(keys):
         y = top - _KEY_ROW * k
-        _draw_key(axes, key, y + 3.0)
-        page.text(_KEYS + 36.0, y, text, 8.5)
+        _draw_key(axes, key, left, y + 3.0)
+        page.text(left + 36.0, y, text, 8.5)
 
 
 def _draw_bar(page: Page, top: float) -> None:
@@ -110,11 +128,16 @@ def _draw_bar(page: Page, top: float) -> None:
     bar.outline.set(edgecolor=INK, linewidth=0.5)
     axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "0.25", "0.5", "0.75", "1"])
     axes.tick_params(labelsize=7.5, width=0.6, length=2.5, colors=INK)
-    page.text(MARGIN + 4.0 + 0.5 * _BAR[0], top - 26.0, "rate of the target", 8.5, ha="center")
+    page.text(
+        MARGIN + 4.0 + 0.5 * _BAR[0],
+        top - 26.0,
+        "share of closings in the target",
+        8.5,
+        ha="center",
+    )
 
 
-def _draw_key(axes: Axes, key: str, y: float) -> None:
-    x = _KEYS
+def _draw_key(axes: Axes, key: str, x: float, y: float) -> None:
     if key == "target":
         corners = [(x + 3.0, y - 4.0), (x + 23.0, y - 4.0), (x + 11.0, y + 4.5)]
         axes.add_patch(Polygon(corners, closed=True, fc="none", ec=INK, lw=1.0))

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 
 from experiments.progress import stage_bar
 from experiments.recorded import RecordingError
-from experiments.replay import Replay, Run
+from experiments.replay import Recorded, Replay, Run
 from experiments.starts import Starts
 from experiments.study.document import study_of
 from experiments.study.folder import SHARDS, TRIALS, read_document
@@ -106,9 +106,11 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
     verdicts = Verdicts(
         ran.outcome, ran.grasp_id, errors[:, 0], errors[:, 1], errors[:, 0], errors[:, 1]
     )
+    recorded = Recorded(done.index, done.now["verdict"], done.now["in_cage"])
     run = Run(
-        case, study.cage, study.cage, scene, "study", Starts(closings.start, 1), closings, verdicts
-    )
+        case, study.cage, study.cage, scene, "study", Starts(closings.start, 1), closings, verdicts,
+        recorded,
+    )  # fmt: skip
     regions = {case.name: figure_regions(study.cage)}
     with stage_bar() as report, whole_file(path) as part:
         film(Replay((run,), study.config.seed), case.name, regions, part, report, camera)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 from collections import Counter
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -14,18 +15,22 @@ import pyarrow as pa
 import pytest
 import shapely
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 from matplotlib.text import Text
 
+from experiments.drawing.sheet import Bounds
 from experiments.figures import figure_regions
+from experiments.intervals import wilson
 from experiments.study import figures, indices_figure
+from experiments.study import map as study_map
 from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.distributions import Distribution
 from experiments.study.figures import draw_indices, draw_map, draw_rates
 from experiments.study.hexagons import bin_hexagons
-from experiments.study.map import CROSSES, map_page
-from experiments.study.pictures import Page, settings
+from experiments.study.map import CROSSES, Closings, map_page
+from experiments.study.map_layout import placed
+from experiments.study.pictures import WIDE, Page, settings
 from experiments.study.shown import WORDS, merged, percent
 from experiments.study.summary import summary
 from experiments.study.variables import VARIABLES
@@ -111,6 +116,10 @@ def regions() -> tuple[FingerRegion, ...]:
     return figure_regions(cage_of("T"))
 
 
+def panels(page: Page) -> list[Axes]:
+    return [axes for axes in page.figure.axes if axes.axison]
+
+
 def the_map(document: dict[str, Any], table: pa.Table) -> Page:
     with settings():
         return map_page(document, table, cage_of("T"), regions())
@@ -152,7 +161,7 @@ def test_every_variable_has_words():
 def test_rates_have_a_panel_per_varying_input_with_its_unit():
     document, _ = study()
     page = rates_page(document)
-    assert len(page.figure.axes) == 5
+    assert len(panels(page)) == 5
     text = words(page)
     assert "hand turned [°]" in text
     assert "3 values, 300 trials each" in text
@@ -160,6 +169,55 @@ def test_rates_have_a_panel_per_varying_input_with_its_unit():
     assert page.figure.axes[0].get_ylim()[0] == 0.0
     assert not any("not at 0" in line for line in text)
     assert_legible(page)
+
+
+def with_closings(document: dict[str, Any], closed: list[int], target: list[int]) -> None:
+    """Bins of friction, so many of 100 trials closed, so many of these in the target."""
+    found = document["found"]
+    found["variables"] = {
+        "friction": {
+            "bins": [
+                {"low": k, "high": k, "mean": k, "trials": 100, "closed": shut, "target": hit,
+                 "rate_95": list(wilson(hit, shut)) if shut else None}
+                for k, (shut, hit) in enumerate(zip(closed, target, strict=True))
+            ]
+        }
+    }  # fmt: skip
+    one = {"trials": 100 * len(closed), "closed": sum(closed), "target": sum(target)}
+    found |= {"trials": one["trials"], "closed": one["closed"], "independent": one}
+    found["outcomes"] |= {"target": one["target"], "collision": one["trials"] - one["closed"]}
+    interval = wilson(one["target"], one["closed"]) if one["closed"] else None
+    found["target_rate_of_closed_95"] = interval
+
+
+def test_a_start_that_was_not_closed_is_no_failure_of_the_grasp():
+    document, _ = study(100, vary={"friction": VARY["friction"]})
+    with_closings(document, [100, 40, 0], [100, 40, 0])
+    page = rates_page(document)
+    (axes,) = panels(page)
+    heights = sorted(patch.get_height() for patch in axes.patches)
+    assert heights == [0.0, 0.4, 1.0]
+    dots = [line.get_ydata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert dots == [1.0, 1.0]
+    text = " ".join(words(page))
+    assert "140 of 140 closings ended in the target" in text
+    assert "share of the trials that were closed" in text
+    assert "160 of 300 trials were not closed (a finger would start inside the object)" in text
+    assert_legible(page)
+
+
+def test_a_study_without_closings_has_no_rate():
+    document, _ = study(100, vary={"friction": VARY["friction"]})
+    with_closings(document, [0, 0], [0, 0])
+    page = rates_page(document)
+    assert "None of 200 trials was closed: there is no rate to show." in words(page)
+    assert not any(line.get_marker() == "o" for axes in page.figure.axes for line in axes.lines)
+
+
+def test_one_input_uses_the_page():
+    document, _ = study(100, vary={"tilt": VARY["tilt"]})
+    (axes,) = panels(rates_page(document))
+    assert axes.get_position().width > 0.85
 
 
 def test_angles_are_drawn_in_degrees():
@@ -173,7 +231,7 @@ def test_an_axis_that_does_not_start_at_0_says_so():
     page = rates_page(document)
     floor = page.figure.axes[0].get_ylim()[0]
     assert 0.9 <= floor < 1.0
-    assert f"The axes of the rate start at {floor:g}, not at 0." in words(page)
+    assert f"The axes start at {floor:g}, not at 0." in words(page)
     assert f"{floor:g}" in [t.get_text() for t in page.figure.axes[0].get_yticklabels()]
     assert_legible(page)
 
@@ -183,7 +241,7 @@ def test_all_inputs_at_once_are_legible():
             if v.low <= 0.1 and v.high >= 0.2}  # fmt: skip
     document, _ = study(100, vary=vary)
     page = rates_page(document)
-    assert len(page.figure.axes) == len(vary) > 20
+    assert len(panels(page)) == len(vary) > 20
     assert_legible(page)
 
 
@@ -202,7 +260,7 @@ def test_the_map_shows_every_closing_and_says_what_it_leaves_out():
 
 
 def _hexagons(axes: Axes) -> list[Any]:
-    return [c for c in axes.collections if type(c) is PolyCollection]
+    return [c for c in axes.collections if type(c) is PathCollection]
 
 
 def test_a_small_cloud_gets_close_ups():
@@ -236,6 +294,76 @@ def test_a_map_without_closings_or_regions_is_drawn():
     with settings():
         page = map_page(document, table.slice(0, 0), cage_of("T"), ())
     assert "no caging regions: not a cage" in words(page)
+
+
+def test_a_map_without_closings_has_no_scale_of_colours():
+    document, table = study()
+    with_closings(document, [0, 0], [0, 0])
+    page = the_map(document, table.slice(0, 0))
+    text = words(page)
+    assert (
+        "None of 200 trials was closed: 200 with a finger inside the object at the start." in text
+    )
+    assert "share of closings in the target" not in text
+    assert not any("hexagon" in line for line in text)
+
+
+def test_no_hexagon_reaches_into_the_clearance_unless_a_start_does():
+    cage = cage_of("T")
+    _, table = study(spread=0.1, collisions=0)
+    closings = Closings.of(table, cage)
+    body, core = (cage.outline.polygon.buffer(k * cage.finger_radius) for k in (1.0, 0.98))
+    for finger in range(3):
+        points = closings.fingers[:, finger]
+        under = shapely.contains_xy(body, *points.T)
+        for some in (closings, Closings(closings.fingers[~under], closings.reached[~under])):
+            mine = some.fingers[:, finger]
+            bins = bin_hexagons(mine, some.reached, 0.05)
+            drawn = study_map._cells(some, finger, bins, cage, regions()).shapes
+            inside = shapely.area(shapely.intersection(list(drawn), core)) > 1e-9
+            may = bins.holding(shapely.contains_xy(body, *mine.T))
+            assert not (inside & ~may).any()
+            assert not shapely.is_empty(list(drawn)).any()
+
+
+def test_lines_that_cannot_be_told_apart_are_one_entry():
+    document, table = study()
+    cage = replace(cage_of("T"), sigma_max=1.0001 * cage_of("T").sigma_first)
+    first = [r for r in regions() if r.level_name == "sigma_first" or r.bound == "inner"][:3]
+    first = [replace(r, level_name="sigma_first", level=cage.sigma_first) for r in first]
+    near = [
+        replace(r, level_name="sigma_max", level=cage.sigma_max, geometry=r.geometry.buffer(1e-4))
+        for r in first
+    ]
+    with settings():
+        text = words(map_page(document, table, cage, [*first, *near]))
+    assert any("looks the same here" in line for line in text)
+    far = [replace(r, geometry=r.geometry.buffer(0.1 * cage.outline.diameter)) for r in near]
+    with settings():
+        text = words(map_page(document, table, cage, [*first, *far]))
+    assert not any("looks the same here" in line for line in text)
+
+
+@pytest.mark.parametrize("whole", [(0.0, 0.0, 4.0, 1.0), (0.0, 0.0, 1.0, 1.2)])
+@pytest.mark.parametrize("sides", [(0.1, 0.1), (0.1, 0.5), (0.5, 0.1), (0.02, 0.02)])
+def test_frames_of_close_ups_are_never_cut_off(whole: Bounds, sides: tuple[float, float]):
+    wide, tall = sides
+    sizes = [(wide, tall), (tall, wide), (tall, 0.5 * wide)]
+    at = [(0.0, 0.0), (whole[2], 0.5), (0.5, whole[3])]
+    windows = [
+        (x - 0.5 * w, y - 0.5 * h, x + 0.5 * w, y + 0.5 * h)
+        for (w, h), (x, y) in zip(sizes, at, strict=True)
+    ]
+    first, *others = placed(whole, windows)
+    frame = shapely.box(*first.window)
+    assert len({round(place.zoom, 9) for place in others}) == 1
+    page = [shapely.box(p.x, p.below - p.height, p.x + p.width, p.below) for p in (first, *others)]
+    for place, window in zip(others, windows, strict=True):
+        assert frame.buffer(1e-9).contains(shapely.box(*place.window))
+        assert shapely.box(*place.window).buffer(1e-9).contains(shapely.box(*window))
+        assert place.x + place.width <= WIDE - 13.9
+    for one, other in combinations(page, 2):
+        assert not one.intersects(other)
 
 
 def test_the_same_study_gives_the_same_bytes(tmp_path: Path):

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,15 @@ import pytest
 from numpy.typing import NDArray
 
 from experiments import clips, video
+from experiments.drawing import film_page
+from experiments.drawing.canvas import Canvas
 from experiments.drawing.film_page import MAIN
 from experiments.drawing.plots import Level, Plot
-from experiments.replay import Replay, replay
+from experiments.replay import Recorded, Replay, replay
 from experiments.replay_files import VIDEO, regions_by_grasp
 from experiments.video import SIZE, film
 from sim.camera import find_backend
+from sim.judge import OUTCOMES
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
 
@@ -110,8 +114,51 @@ def test_clips_show_the_trials_that_were_counted(done: Replay):
         assert (clip.forces[-1] > 0.1).all()
 
 
+def one_trial(done: Replay, outcome: str, recorded: Recorded | None) -> clips.Clip:
+    """The first clip, as if it had ended so."""
+    (run,) = done.runs
+    code = np.array([OUTCOMES.index(outcome)])
+    closings = replace(run.closings, **{
+        one.name: getattr(run.closings, one.name)[:1] for one in fields(run.closings)
+    })  # fmt: skip
+    verdicts = replace(run.verdicts, outcome=code)
+    run = replace(run, which="study", closings=closings, verdicts=verdicts, recorded=recorded)
+    return replace(clips.clips(done)[0], run=run)
+
+
+@pytest.mark.parametrize("outcome", OUTCOMES)
+def test_a_film_of_one_trial_tells_that_trial(done: Replay, outcome: str):
+    clip = one_trial(done, outcome, Recorded(4, "target", True))
+    words, fine = film_page.headline(clip.run)
+    assert words.startswith("trial 4 ")
+    assert outcome.split("_")[0] in words or outcome == "unmatched"
+    assert fine == (outcome == "target")
+    assert film_page._about(clip) == "trial 4: by plan closes to the target"
+
+
+def test_a_film_of_one_trial_knows_what_the_planner_said(done: Replay):
+    clip = one_trial(done, "other_grasp", Recorded(7, "caged", False))
+    assert film_page._about(clip) == "trial 7: by plan in another cage"
+    assert film_page.headline(clip.run)[1]
+
+
+def test_no_closing_is_called_lost(done: Replay):
+    clip = one_trial(done, "jammed", None)
+    text = "0 of 1 closings ended in the target grasp, 0 escaped, 1 jammed"
+    assert film_page.headline(clip.run) == (text, False)
+
+
+@pytest.mark.parametrize("outcome", OUTCOMES)
+def test_the_badge_holds_its_words(done: Replay, outcome: str):
+    canvas = Canvas(400, 80)
+    film_page._draw_badge(canvas, one_trial(done, outcome, Recorded(4, "target", True)))
+    row = canvas.pixels[40, :, :3].astype(int)
+    inside = np.flatnonzero((row != 255).any(axis=1))
+    white = np.flatnonzero((canvas.pixels[28:50, 20 : inside.max() + 1, :3] > 200).all(-1).any(0))
+    assert inside.max() - (20 + white.max()) >= 8
+
+
 def test_a_curve_meets_its_levels_and_grows():
-    from experiments.drawing.canvas import Canvas
     from experiments.drawing.plots import Curve
 
     plot = Plot((20.0, 30.0, 180.0, 90.0), "t", 1.0, (0.0, 2.0), [Level(1.0, "one")])
