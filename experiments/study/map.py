@@ -22,7 +22,8 @@ from experiments.study.map_layout import SCALE, Place, placed
 from experiments.study.map_panel import Cells, Panel, draw_panel, draw_scale_bar
 from experiments.study.map_strip import draw_strip, strip_height, strip_keys, strip_words
 from experiments.study.pictures import WIDE, Page, check_suffix, settings, write
-from experiments.study.shard import STUDY_OUTCOMES, target_trials
+from experiments.study.rows import target_trials
+from experiments.study.shard import STUDY_OUTCOMES
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
 from icage.regions import FingerRegion

@@ -18,7 +18,8 @@ from experiments.replay import Recorded, Replay, Run
 from experiments.starts import Starts
 from experiments.study.document import study_of
 from experiments.study.folder import SHARDS, TRIALS, read_document
-from experiments.study.shard import Ran, Study, run_trials, table_of, worlds_of
+from experiments.study.rows import table_of
+from experiments.study.shard import Ran, Study, run_trials, worlds_of
 from experiments.versions import versions
 from experiments.whole_files import whole_file
 from icage.arrays import FloatArray

@@ -13,7 +13,8 @@ import pyarrow as pa
 
 from experiments.intervals import stopped_at
 from experiments.study.folder import StudyFolder, read_shards
-from experiments.study.shard import Study, run_trials, table_of, target_trials
+from experiments.study.rows import table_of, target_trials
+from experiments.study.shard import Study, run_trials
 from experiments.study.spans import missing
 from sim.engine import no_log
 

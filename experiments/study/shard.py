@@ -1,6 +1,6 @@
-"""A piece of a study: any trials, from their numbers to rows of a table.
+"""A piece of a study: any trials, from their numbers to what became of them.
 
-A row depends on the study's config, its case and the trial's number, and on nothing else: not on
+A result depends on the study's config, its case and the trial's number, and on nothing else: not on
 the shard, the thread, the machine or on who ran before.
 """
 
@@ -10,18 +10,17 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-import pyarrow as pa
 
 from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.placements import Intended, collides, moved
 from experiments.study.variants import Key, Variant, Variants
-from icage.arrays import BoolArray, FloatArray, IntArray
+from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.formats.case_json import Case
-from icage.membership import COLLIDES, VERDICTS, Answers, query
+from icage.membership import COLLIDES, Answers, query
 from icage.tolerance import COLLISION
-from sim.judge import JAMMED, OUTCOMES, TARGET, UNMATCHED, Tolerances, grasp_errors, judge
+from sim.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
 from sim.outcome import ClosingOutcomes
 from sim.varied import Worlds
 from sim.varied_closing import VariedOutcomes, close_varied
@@ -209,59 +208,3 @@ def _judged(
 
 def _errors(verdicts: Any) -> FloatArray:
     return np.column_stack([verdicts.position_error, verdicts.angle_error])
-
-
-def table_of(study: Study, ran: Ran) -> pa.Table:
-    """A row per trial. Lengths in the case's unit, angles in [rad], forces in [closing force]."""
-    count, sizes = len(ran.trials), ran.sizes
-    closings, answers = ran.closings.closings, ran.answers
-    lost = np.ones(count, dtype=np.bool_)
-    lost[ran.done] = ran.outcome[ran.done] == OUTCOMES.index("diverged")
-
-    def of_closings(values: Any) -> pa.Array:
-        whole = np.zeros(count, dtype=np.asarray(values).dtype)
-        whole[ran.done] = values
-        return pa.array(whole, mask=lost)
-
-    columns: dict[str, Any] = {
-        "trial": ran.trials,
-        "seed": np.full(count, study.config.seed, dtype=np.uint64),
-        **_pose("meant", ran.meant),
-        **_pose("start", ran.starts),
-        **{name: ran.values[name] for name in study.design.names},
-        "verdict": pa.array([VERDICTS[k] for k in answers.verdict]),
-        "in_cage": answers.in_cage,
-        "margin": _known(answers.margin),
-        "target_margin": _known(answers.target_margin),
-        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome]),
-        "grasp_id": ran.grasp_id,
-        **{
-            f"end_{name}": of_closings(closings.end[:, k])
-            for k, name in enumerate(("x", "y", "theta", "sigma"))
-        },
-        "position_error": _known(ran.errors[:, 0] * sizes),
-        "angle_error": _known(ran.errors[:, 1]),
-        "peak_force": of_closings(ran.closings.peak_force),
-        "penetration_max": of_closings(closings.penetration_max * sizes[ran.done]),
-        "penetration_rest": of_closings(closings.penetration_rest * sizes[ran.done]),
-        "steps": of_closings(closings.steps),
-    }
-    return pa.table(columns)
-
-
-def _pose(prefix: str, placements: FloatArray) -> dict[str, Any]:
-    names = ("x", "y", "theta", "sigma")
-    return {
-        f"{prefix}_{name}": np.ascontiguousarray(placements[:, k]) for k, name in enumerate(names)
-    }
-
-
-def _known(values: FloatArray) -> pa.Array:
-    """Numbers, null where there is none."""
-    return pa.array(np.ascontiguousarray(values), mask=np.isnan(values))
-
-
-def target_trials(table: pa.Table) -> BoolArray:
-    """(n,) whether each trial ended in the target."""
-    words = table["outcome"].to_pylist()
-    return np.array([word == OUTCOMES[TARGET] for word in words], dtype=np.bool_)

@@ -13,7 +13,8 @@ from experiments.intervals import wilson
 from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.indices import sobol, split
-from experiments.study.shard import STUDY_OUTCOMES, target_trials
+from experiments.study.rows import target_trials
+from experiments.study.shard import STUDY_OUTCOMES
 from experiments.study.shown import percent
 from icage.arrays import BoolArray, FloatArray
 from icage.membership import VERDICTS

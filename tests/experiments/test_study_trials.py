@@ -15,13 +15,13 @@ from experiments.study.config import study_config
 from experiments.study.distributions import Distribution
 from experiments.study.document import study_document, study_of
 from experiments.study.placements import BLOCK, Intended, moved
+from experiments.study.rows import table_of
 from experiments.study.shard import (
     STUDY_OUTCOMES,
     Ran,
     Study,
     _judged,
     run_trials,
-    table_of,
     worlds_of,
 )
 from experiments.study.variables import VARIABLES
