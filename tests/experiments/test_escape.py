@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import pytest
 
 from experiments.arena import Arena
 from experiments.disc_case import PhysicalCase, physical_case
-from experiments.escape import Assault, Escape, at, attacked, judged
+from experiments.escape import Assault, Escape, at, judged
 from icage.formats.case_json import read_case
 from models import CASES
 from sim.attack import ESCAPED, HELD, Attacks, attack
@@ -123,22 +122,6 @@ def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
     assert guided["measured"]["low"] == pytest.approx(top, rel=5e-4)
     assert guided["measured"]["high"] == pytest.approx(top, rel=5e-4)
     assert document["penetration_max"] < 1e-3 * document["diameter"]
-
-
-@pytest.mark.slow
-def test_a_sigma_max_that_is_too_small_is_found():
-    """That one which is too large is found, ``test_regress`` shows."""
-    factor, words = 0.99, "escaped above"
-    cage = cage_of("T")
-    assert cage.sigma_max is not None
-    assert cage.sigma_max_upper is not None
-    wrong = replace(
-        cage, sigma_max=factor * cage.sigma_max, sigma_max_upper=factor * cage.sigma_max_upper
-    )
-    result = attacked(PhysicalCase.of(t_case(), wrong), 2, 0, 2, silent, ["guided"])
-    assert result.verdict == "failed"
-    assert any("guided" in sentence and words in sentence for sentence in result.failures)
-    assert any("guided" in sentence and "measure" in sentence for sentence in result.failures)
 
 
 @pytest.mark.slow

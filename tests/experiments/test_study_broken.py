@@ -344,7 +344,7 @@ def test_an_interrupt_keeps_finished_shards(folder: Path, study: Studied):
 
 @posix
 @pytest.mark.slow
-@pytest.mark.parametrize("kills", [3])
+@pytest.mark.parametrize("kills", [2])
 def test_killed_at_random(tmp_path: Path, kills: int):
     """``python -m benchmarks.kills`` does it 20 times."""
     told = survive(tmp_path, kills, seed=1, trials=100, shard=3)
