@@ -13,6 +13,7 @@ from experiments.drawing.numbers import significant
 from experiments.drawing.object_view import ObjectView
 from experiments.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
 from experiments.drawing.plots import Box, Curve, Level, Plot
+from experiments.words import END_WORDS, VERDICT_WORDS
 from icage.cage import Cage
 from icage.regions import FingerRegion
 
@@ -47,26 +48,6 @@ _SETS: Final = {
     "study": "study",
 }
 """Where starts were drawn from."""
-
-_STARTS: Final = {
-    "target": "by plan closes to the target",
-    "caged": "by plan caged, others in reach",
-    "other": "by plan held, not with the target",
-    "escapes": "by plan not caged",
-    "collision": "by plan in collision",
-}
-"""What the planner says of a start: of the planned hand, without friction."""
-
-_ENDS: Final = {
-    "target": "ended in the target grasp",
-    "other_grasp": "ended in another grasp of the plan",
-    "jammed": "jammed: at rest short of a grasp, held by friction",
-    "unmatched": "ended at rest in no grasp of the plan",
-    "escaped": "escaped: the hand shut on nothing",
-    "timed_out": "timed out: still moving at the end",
-    "diverged": "diverged: the engine gave up",
-}
-"""How a closing ended."""
 
 
 class Page:
@@ -140,8 +121,8 @@ def _about(clip: Clip) -> str:
     if one is None:
         return f"{_SETS[clip.run.which]}, start {clip.trial + 1} of {len(clip.run.closings)}"
     away = one.verdict in ("target", "caged") and not one.in_cage
-    said = "by plan in another cage" if away else _STARTS[one.verdict]
-    return f"trial {one.index}: {said}"
+    said = "in another cage" if away else VERDICT_WORDS[one.verdict]
+    return f"trial {one.index}, by plan: {said}"
 
 
 def _is_good(run: Run, outcome: str) -> bool:
@@ -168,7 +149,7 @@ def headline(run: Run) -> tuple[str, bool]:
     fine = all(_is_good(run, name) for name, count in counts.items() if count)
     if run.recorded is not None:
         (outcome,) = (name for name, count in counts.items() if count)
-        return f"trial {run.recorded.index} {_ENDS[outcome]}", fine
+        return f"trial {run.recorded.index}: {END_WORDS[outcome]}", fine
     parts = [f"{counts['target']} of {trials} closings ended in the target grasp"]
     if counts["other_grasp"]:
         parts.append(f"{counts['other_grasp']} in another grasp")

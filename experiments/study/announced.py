@@ -3,18 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from experiments.study.shard import Study
 from experiments.study.shown import number
-
-VERDICT_WORDS: Final = {
-    "target": "closing can end only in the target",
-    "caged": "caged, other grasps within reach",
-    "other": "held, but not with the target",
-    "escapes": "not caged",
-    "collision": "in collision with the object",
-}
+from experiments.words import VERDICT_WORDS
 
 
 def announcement(study: Study, document: Mapping[str, Any]) -> str:

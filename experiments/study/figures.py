@@ -30,6 +30,7 @@ from experiments.study.pictures import (
 )
 from experiments.study.shown import WORDS, display, merged, percent
 from experiments.study.variables import VARIABLES
+from experiments.words import NOT_CLOSED
 from icage.errors import InputError
 
 __all__ = ["draw_indices", "draw_map", "draw_rates"]
@@ -47,13 +48,6 @@ for every line more; above one."""
 
 _KEY_ROW: Final = 23.0
 """[pt] The line of keys."""
-
-_WHY: Final = {
-    "collision": "a finger would start inside the object",
-    "not_caged": "the start is not caged",
-    "no_shape": "the outline or hand would cross itself",
-}
-"""Why a trial is not closed."""
 
 _STEPS: Final = {
     0.0: 0.25, 0.5: 0.1, 0.75: 0.05, 0.8: 0.05, 0.9: 0.02, 0.95: 0.01, 0.99: 2e-3, 0.999: 2e-4
@@ -85,17 +79,6 @@ def draw_rates(document: Mapping[str, Any], path: Path) -> None:
     floor = _floor([one for bins in shown.values() for one in bins])
     with settings():
         write(_rates_page(document, shown, floor).figure, path)
-
-
-def _closed(one: Mapping[str, Any]) -> int:
-    """Trials of a bin that were closed; all, in a document of before they were counted."""
-    return int(one.get("closed", one["trials"]))
-
-
-def _whole(found: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Counts of the independent trials, over which rates are."""
-    counts = {name: found[name] for name in ("trials", "closed")}
-    return found.get("independent") or {**counts, "target": found["outcomes"]["target"]}
 
 
 def _rates_page(
@@ -141,7 +124,7 @@ def _label(name: str, unit: str, wide: float) -> list[str]:
 def _rates_caption(
     found: Mapping[str, Any], shown: Mapping[str, Sequence[Mapping[str, Any]]], floor: float
 ) -> list[str]:
-    one = _whole(found)
+    one = found["independent"]
     kind = "independent trials" if one["trials"] < found["trials"] else "trials"
     if not one["closed"]:
         return [f"None of {one['trials']:,} {kind} was closed: there is no rate to show."]
@@ -153,7 +136,7 @@ def _rates_caption(
     ]
     if one["closed"] < one["trials"]:
         left = one["trials"] - one["closed"]
-        why = " or ".join(words for name, words in _WHY.items() if found["outcomes"][name])
+        why = " or ".join(words for name, words in NOT_CLOSED.items() if found["outcomes"][name])
         text = (
             f"{left:,} of {one['trials']:,} {kind} were not closed ({why}) and say nothing of the "
             "grasp: they count in the grey alone."
@@ -171,12 +154,12 @@ def _rates_keys(
 ) -> list[tuple[str, str]]:
     """What is drawn, and what it means."""
     keys: list[tuple[str, str]] = []
-    wide = {_is_wide(one, bins) for bins in shown.values() for one in bins if _closed(one)}
+    wide = {_is_wide(one, bins) for bins in shown.values() for one in bins if one["closed"]}
     what = "share of the closings that end in the target, 95 % interval (Wilson)"
     keys += [(key, what) for key, is_wide in (("box", True), ("dot", False)) if is_wide in wide]
     if len(keys) == 2:
         keys = [("box dot", what)]
-    if any(_closed(one) < one["trials"] for bins in shown.values() for one in bins):
+    if any(one["closed"] < one["trials"] for bins in shown.values() for one in bins):
         keys.append(("shut", "share of the trials that were closed"))
     return keys
 
@@ -215,20 +198,20 @@ def _rate_panel(
     factor, _ = display(VARIABLES[name], document["unit"])
     lows, highs = ([one[key] * factor for one in bins] for key in ("low", "high"))
     span = max(highs) - min(lows) or 1.0
-    overall = _whole(document["found"])
+    overall = document["found"]["independent"]
     if overall["closed"]:
         rate = overall["target"] / overall["closed"]
         axes.axhline(rate, color=QUIET_INK, lw=0.7, ls=(0, (4.0, 3.0)), zorder=1)
-    grey = any(_closed(one) < one["trials"] for one in bins)
+    grey = any(one["closed"] < one["trials"] for one in bins)
     for one, a, b in zip(bins, lows, highs, strict=True):
-        mean, box = one.get("mean", 0.5 * (one["low"] + one["high"])) * factor, _is_wide(one, bins)
+        mean, box = one["mean"] * factor, _is_wide(one, bins)
         if grey:
             c, d = (a, b) if box else (mean - 0.012 * span, mean + 0.012 * span)
-            high = _closed(one) / one["trials"]
+            high = one["closed"] / one["trials"]
             axes.add_patch(Rectangle((c, 0.0), d - c, high, fc=_SHUT, ec=PAPER, lw=0.4, zorder=0.5))
-        if not _closed(one):
+        if not one["closed"]:
             continue
-        rate, (least, most) = one["target"] / _closed(one), one["rate_95"]
+        rate, (least, most) = one["target"] / one["closed"], one["rate_95"]
         if box:
             axes.add_patch(
                 Rectangle(
@@ -257,9 +240,9 @@ def _sizes(bins: Sequence[Mapping[str, Any]], document: Mapping[str, Any], name:
 
 def _floor(bins: Sequence[Mapping[str, Any]]) -> float:
     """Where the axis starts: 0, or higher if all shares are above 0.9."""
-    closed = [one for one in bins if _closed(one)]
-    shares = [one["target"] / _closed(one) for one in closed]
-    shares += [_closed(one) / one["trials"] for one in bins]
+    closed = [one for one in bins if one["closed"]]
+    shares = [one["target"] / one["closed"] for one in closed]
+    shares += [one["closed"] / one["trials"] for one in bins]
     if min(shares) <= 0.9:
         return 0.0
     least = min(*shares, *(one["rate_95"][0] for one in closed))

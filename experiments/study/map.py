@@ -23,7 +23,7 @@ from experiments.study.map_panel import Cells, Panel, draw_panel, draw_scale_bar
 from experiments.study.map_strip import draw_strip, strip_height, strip_keys, strip_words
 from experiments.study.pictures import WIDE, Page, check_suffix, settings, write
 from experiments.study.rows import target_trials
-from experiments.study.shard import STUDY_OUTCOMES
+from experiments.words import NOT_CLOSED
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
 from icage.regions import FingerRegion
@@ -60,7 +60,7 @@ class Closings:
     @classmethod
     def of(cls, table: pa.Table, cage: Cage) -> Closings:
         """Those of a study's table; starts are those of the planned hand."""
-        closed = ~np.isin(np.array(table["outcome"].to_pylist()), STUDY_OUTCOMES[-3:])
+        closed = ~np.isin(np.array(table["outcome"].to_pylist()), list(NOT_CLOSED))
         names = ("start_x", "start_y", "start_theta", "start_sigma")
         rows = np.column_stack([table[name].to_numpy() for name in names])
         return cls(cage.hand.fingers(rows[closed]), target_trials(table)[closed])

@@ -17,6 +17,7 @@ from experiments.drawing.palette import FINGERS, INK, PAPER
 from experiments.study.map_panel import colours, draw_crosses, draw_meant, is_solid, region_style
 from experiments.study.pictures import MARGIN, ROW, Page
 from experiments.study.shown import number
+from experiments.words import NOT_CLOSED
 from icage.cage import Cage
 from icage.regions import FingerRegion
 
@@ -34,18 +35,14 @@ _KEYS, _KEY_ROW = 210.0, 14.0
 
 _FIRST, _MAX = r"$\sigma_{\mathrm{first}}$", r"$\sigma_{\mathrm{max}}$"
 
-_WHY: Final = (
-    ("collision", "with a finger inside the object at the start"),
-    ("not_caged", "skipped, as not caged"),
-    ("no_shape", "whose outline or hand would cross itself"),
-)
-
 
 def strip_words(document: Mapping[str, Any], width: float, fewest: int) -> list[str]:
     """Lines about the closings; hexagons ``width`` wide have ``fewest`` closings or more."""
     found, unit = document["found"], document["unit"]
     missing = [
-        f"{found['outcomes'][name]:,} {words}" for name, words in _WHY if found["outcomes"][name]
+        f"{found['outcomes'][name]:,} ({why})"
+        for name, why in NOT_CLOSED.items()
+        if found["outcomes"][name]
     ]
     if not found["closed"]:
         why = f": {', '.join(missing)}" if missing else ""

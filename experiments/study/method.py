@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from experiments.study.announced import nominal_words
-from experiments.study.variables import VARIABLES, Variable, own_unit
+from experiments.study.shown import display
+from experiments.study.variables import VARIABLES, Variable
 
 
 def method(document: Mapping[str, Any]) -> Iterator[str]:
@@ -94,12 +94,12 @@ def _nominal(vary: Mapping[str, Any]) -> str:
 
 
 def _plain(one: Variable) -> str:
-    shown = f"{scale(one.name) * one.nominal:.4g}"
-    return f"{shown} deg" if one.measure == "angle" else shown
+    factor, shown = display(one, "")  # no length has a usual value but 0
+    return f"{factor * one.nominal:.4g} {shown}".strip()
 
 
 def _distribution(name: str, one: Mapping[str, Any], unit: str) -> str:
-    factor, shown = scale(name), shown_unit(name, unit)
+    factor, shown = display(VARIABLES[name], unit)
     p = [f"{factor * value:.4g}" for value in one["parameters"]]
     word = {
         "fixed": lambda: p[0],
@@ -108,17 +108,7 @@ def _distribution(name: str, one: Mapping[str, Any], unit: str) -> str:
         "truncated": lambda: f"normal ({p[0]}, {p[1]}) within {p[2]} to {p[3]}",
         "grid": lambda: f"{len(p)} values, {p[0]} to {p[-1]}",
     }[one["kind"]]()  # fmt: skip
-    return f"{word} {shown}" if shown != "1" else word
-
-
-def scale(name: str) -> float:
-    """Factor to the unit in which a page tells a variable: degrees for angles."""
-    return math.degrees(1.0) if VARIABLES[name].measure == "angle" else 1.0
-
-
-def shown_unit(name: str, unit: str) -> str:
-    """The unit in which a page tells a variable."""
-    return "deg" if VARIABLES[name].measure == "angle" else own_unit(VARIABLES[name], unit)
+    return f"{word} {shown}".strip()
 
 
 def _number(value: float, over: float = 1.0) -> str:

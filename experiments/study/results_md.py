@@ -6,29 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.intervals import rate_upper
-from experiments.study.announced import VERDICT_WORDS
-from experiments.study.method import method, scale, shown_unit
-from experiments.study.shown import WORDS, merged, percent
+from experiments.study.method import method
+from experiments.study.shown import WORDS, display, merged, percent
 from experiments.study.summary import sentence
 from experiments.study.variables import VARIABLES
+from experiments.words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
 
 _ENDS: Final = ("target", "other_grasp", "escaped")
 
 LONGEST: Final = 40
 """Rows of a table of rates; finer grids are merged."""
 
-_OUTCOMES: Final = {
-    "target": "in the target grasp",
-    "other_grasp": "in another grasp of the plan",
-    "jammed": "at rest elsewhere, held by friction or weight",
-    "unmatched": "in a grasp that the plan does not have; no friction or weight holds it",
-    "escaped": "the hand shut on nothing",
-    "timed_out": "still moving when time was up",
-    "diverged": "the engine gave up",
-    "collision": "not closed: a finger would start inside the object",
-    "not_caged": "not closed: the start is not caged",
-    "no_shape": "not closed: the outline or hand drawn crosses itself",
-}
+_OUTCOMES: Final = {**END_WORDS, **{k: f"not closed: {why}" for k, why in NOT_CLOSED.items()}}
 
 
 def results_page(document: Mapping[str, Any], command: str) -> str:
@@ -138,12 +127,13 @@ def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
     yield ""
     yield f"`{name}`: {VARIABLES[name].help}."
     yield ""
+    factor, shown = display(VARIABLES[name], unit)
     yield from table(
-        (f"{name} [{shown_unit(name, unit)}]", "trials", "closed", "target", "rate of closed",
+        (f"{name} [{shown}]" if shown else name, "trials", "closed", "target", "rate of closed",
          "95 %"),
         [
             (
-                _range(name, bin_),
+                _range(factor, bin_),
                 *(str(bin_[key]) for key in ("trials", "closed", "target")),
                 *_rate(bin_),
             )
@@ -205,8 +195,8 @@ def _failed(found: Mapping[str, Any]) -> Iterator[str]:
     yield f"    icage replay-trial DIR {found['failed_trials'][0]} --video trial.mp4"
 
 
-def _range(name: str, bin_: Mapping[str, Any]) -> str:
-    low, high = (f"{scale(name) * bin_[end]:.4g}" for end in ("low", "high"))
+def _range(factor: float, bin_: Mapping[str, Any]) -> str:
+    low, high = (f"{factor * bin_[end]:.4g}" for end in ("low", "high"))
     return low if low == high else f"{low} to {high}"
 
 

@@ -15,6 +15,7 @@ from experiments.study.config import StudyConfig
 from experiments.study.design import Design
 from experiments.study.placements import Intended, collides, moved
 from experiments.study.variants import Key, Variant, Variants
+from experiments.words import NOT_CLOSED
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.formats.case_json import Case
@@ -25,9 +26,7 @@ from sim.outcome import ClosingOutcomes
 from sim.varied import Worlds
 from sim.varied_closing import VariedOutcomes, close_varied
 
-STUDY_OUTCOMES: Final = (*OUTCOMES, "collision", "not_caged", "no_shape")
-"""collision: a finger would start inside the object. not_caged: skipped, as asked. no_shape: the
-outline or hand that was drawn crosses itself."""
+STUDY_OUTCOMES: Final = (*OUTCOMES, *NOT_CLOSED)
 
 COLLISION_AT_START, NOT_CAGED, NO_SHAPE = (len(OUTCOMES) + k for k in range(3))
 

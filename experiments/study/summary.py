@@ -16,6 +16,7 @@ from experiments.study.indices import sobol, split
 from experiments.study.rows import target_trials
 from experiments.study.shard import STUDY_OUTCOMES
 from experiments.study.shown import percent
+from experiments.words import NOT_CLOSED
 from icage.arrays import BoolArray, FloatArray
 from icage.membership import VERDICTS
 
@@ -37,7 +38,7 @@ def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, A
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
     count = len(reached)
-    closed = ~np.isin(outcomes, STUDY_OUTCOMES[-3:])
+    closed = ~np.isin(outcomes, list(NOT_CLOSED))
     alone = independent(design, count)
     failed = np.flatnonzero(closed & ~reached)
     found: dict[str, Any] = {

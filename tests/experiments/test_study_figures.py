@@ -253,7 +253,7 @@ def test_the_map_shows_every_closing_and_says_what_it_leaves_out():
     assert "where the close-ups lie" not in text
     caption = " ".join(text)
     assert "850 closings" in caption
-    assert "50 with a finger inside the object" in caption
+    assert "50 (a finger would start inside the object)" in caption
     panels = [axes for axes in page.figure.axes if _hexagons(axes)]
     assert len(panels) == 3
     assert_legible(page)
@@ -301,9 +301,8 @@ def test_a_map_without_closings_has_no_scale_of_colours():
     with_closings(document, [0, 0], [0, 0])
     page = the_map(document, table.slice(0, 0))
     text = words(page)
-    assert (
-        "None of 200 trials was closed: 200 with a finger inside the object at the start." in text
-    )
+    why = "a finger would start inside the object"
+    assert f"None of 200 trials was closed: 200 ({why})." in text
     assert "share of closings in the target" not in text
     assert not any("hexagon" in line for line in text)
 

@@ -48,7 +48,7 @@ def test_the_page_says_the_bottom_line_first(folder: Path) -> None:
     for words in (
         "## Method",
         "## Command",
-        "| friction [1] |",
+        "| friction |",
         "replay-trial",
         "## Friction of the fingers",
         "seed 0",

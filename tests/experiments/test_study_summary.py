@@ -130,7 +130,7 @@ def test_merged_bins_lose_no_closing_and_know_of_none():
 def test_the_tables_of_the_page_name_what_their_rates_are_of():
     document = invented(friction=FRICTION)
     text = page(document)
-    assert "| friction [1] | trials | closed | target | rate of closed | 95 % |" in text
+    assert "| friction | trials | closed | target | rate of closed | 95 % |" in text
     (first, *_, last) = re.findall(r"^\| [\d.e-]+ to .*$", text, re.MULTILINE)
     assert "| 12 | 12 | 12 | 100 % | 75.8 % to 100 % |" in first
     assert last.endswith("| 12 | 0 | 0 | - | - |")
