@@ -103,7 +103,7 @@ def differences(before: Any, after: Any, where: str = "") -> Iterator[str]:
     if isinstance(before, dict) and isinstance(after, dict):
         for key, value in before.items():
             if key not in IGNORED:
-                found = after[key] if key in after else "gone"
+                found = after.get(key, "gone")
                 yield from differences(value, found, f"{where}/{key}")
     elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
         for k, (one, other) in enumerate(zip(before, after, strict=True)):
@@ -145,6 +145,7 @@ def compare(before: Path, after: Path) -> int:
 
 
 def main() -> int:
+    """Record or compare."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.same_answers")
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("record").add_argument("out", type=Path)
