@@ -16,11 +16,11 @@ from typing import Final
 
 import numpy as np
 
-from experiments.least_opening import NoOpeningError, least_opening
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case
+from icage.geometry.least_opening import NoOpeningError, least_opening
 from icage.hand import HandShape
 from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline

@@ -17,12 +17,12 @@ from experiments.starts import SamplingError, draw_starts
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.errors import IcageError
+from icage.geometry.contact_types import Supports, supports
 from icage.hand import Placement
 from icage.kernels.locate import depth_inside
 from icage.membership import TARGET, query
 from sim.batch import close_many
 from sim.config import SimConfig
-from sim.contact_types import Supports, supports
 from sim.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix
 from sim.judge import OUTCOMES, Verdicts, judge
 from sim.outcome import ClosingOutcomes

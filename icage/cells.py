@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from icage.arrays import FloatArray
 from icage.cage import Cage, CageWork, not_a_cage
 from icage.errors import GeometryError
+from icage.geometry.statics import ISOLATED, no_depth_reason
 from icage.hand import HandShape
 from icage.minima import escape_path, first_joining, grasps_and_punctures
 from icage.outline import Outline
 from icage.reach import largest_sigma_in
 from icage.solver import Search, Terrain, Tree, merge_tree, search
-from icage.statics import ISOLATED, no_depth_reason
 from icage.target import Target, contacts_as_configuration, find_target
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE
 from icage.why import plateau_reason, why_not

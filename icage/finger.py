@@ -18,7 +18,7 @@ import shapely
 
 from icage.arrays import FloatArray
 from icage.errors import GeometryError, GraspError
-from icage.exterior import without_straight_vertices
+from icage.geometry.exterior import without_straight_vertices
 from icage.outline import Outline
 from icage.tolerance import COLLISION, CONTACT_OFF
 

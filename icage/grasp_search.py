@@ -20,8 +20,8 @@ from scipy.optimize import minimize
 from icage.arrays import FloatArray, IntArray
 from icage.contact_features import EDGE, VERTEX, Features, balanced_triples, features_of
 from icage.errors import GraspError, HandError, InputError
-from icage.exterior import Pieces, exterior_pieces, shortest_side
 from icage.finger import offsets
+from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.reach import largest_sigma_in

@@ -8,8 +8,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
+from icage.geometry.statics import free_fingers
 from icage.solver import Configuration, Search, Terrain, Tree, below_escape
-from icage.statics import free_fingers
 from icage.target import Target, plateau_through
 from icage.tolerance import DEPTH_CUT, LEVEL
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import BoolArray, ComplexArray, FloatArray
-from icage.exterior import Pieces
+from icage.geometry.exterior import Pieces
 from icage.solver import Search
 
 _INSIDE = 1e-9

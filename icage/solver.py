@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
-from icage.exterior import Pieces, exterior_pieces, largest_sigma
+from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
 from icage.kernels.facet import MAX_BASE, finger_on_segment
 from icage.kernels.search import CLOSED_IN, ESCAPED, GAVE_UP, explore

@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.exterior import Pieces
+from icage.geometry.exterior import Pieces
 from icage.hand import HandShape
 from icage.kernels.tree import births
 from icage.solver import Configuration, Terrain

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
+from icage.geometry.statics import ISOLATED, contacts_reason, slide_reason
 from icage.kernels.tree import births
 from icage.solver import Configuration, Terrain
-from icage.statics import ISOLATED, contacts_reason, slide_reason
 from icage.target import cells_near, contacts_as_configuration
 from icage.tolerance import CONTACT_OFF
 

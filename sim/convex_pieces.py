@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
-from icage.convex import merge_convex, triangulate
+from icage.geometry.convex import merge_convex, triangulate
 from icage.outline import Outline
 
 MAX_PIECE_EDGES = 24

@@ -16,7 +16,7 @@ from scipy.optimize import linprog
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
-from sim.contact_types import ONE_NORMAL, Supports
+from icage.geometry.contact_types import ONE_NORMAL, Supports
 from sim.engine import MjData, MjModel, mj
 from sim.scene import Scene
 

@@ -20,9 +20,9 @@ import numpy as np
 
 from icage.arrays import BoolArray, FloatArray
 from icage.errors import InputError
+from icage.geometry.contact_types import Supports, feet, supports
 from icage.hand import Placement
 from sim.batch import close_many
-from sim.contact_types import Supports, feet, supports
 from sim.scene import Scene
 from sim.watch import DIVERGED, SETTLED
 

@@ -16,8 +16,8 @@ from scipy.optimize import linprog
 
 from icage.arrays import FloatArray
 from icage.errors import GeometryError
+from icage.geometry.contact_types import Supports, on_others, on_supports
 from icage.hand import Placement
-from sim.contact_types import Supports, on_others, on_supports
 from sim.engine import mj, no_log
 from sim.rigid_hand import disc_depths, rigid_data, rigid_model
 from sim.scene import Scene

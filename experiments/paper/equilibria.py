@@ -21,7 +21,7 @@ from icage.contact_features import EDGE, balanced_triples, features_of
 from icage.contact_space.equilibria import pair_grasps, three_finger_kind
 from icage.contact_space.sectors import concurrency_point, sector_at
 from icage.contact_space.third_finger import turn
-from icage.statics import free_fingers
+from icage.geometry.statics import free_fingers
 
 Shown = tuple[str, FloatArray, tuple[int, ...]]
 """Words, contacts (3, 2), free fingers (0..2)."""

@@ -13,7 +13,7 @@ from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, 
 from experiments.drawing.shapes import as_path
 from experiments.paper.page import WIDTH, bounds_of, new_sheet
 from experiments.paper.study import Study
-from icage.statics import free_fingers
+from icage.geometry.statics import free_fingers
 
 _MOST = 120
 """Grasps shown; those beyond, with the largest sigma, are counted only."""

@@ -15,12 +15,12 @@ from icage.contact_space.exploration import Exploration, Plane
 from icage.errors import InputError
 from icage.finger import directions_on_arcs, offsets
 from icage.formats.case_json import Case
+from icage.geometry.statics import contacts_reason
 from icage.hand import HandShape
 from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline
 from icage.planner import plan
 from icage.regions import FingerRegion, caging_regions
-from icage.statics import contacts_reason
 from icage.tolerance import TARGET_SHIFT, TARGET_TURN
 
 _ARCS = (2, 3, 4, 8, 16)

@@ -21,7 +21,7 @@ from experiments.paper.page import (
 from experiments.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.kernels.explore import PINCH, SEAM
-from icage.statics import free_fingers
+from icage.geometry.statics import free_fingers
 
 NONE = "no tunnel edge in this search: every minimum it met is one of free space too"
 

@@ -13,15 +13,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from experiments.least_opening import NoOpeningError, followed_opening, sliding_room
 from experiments.study.config import StudyConfig
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum
 from icage.errors import IcageError
+from icage.geometry.contact_types import Supports, supports
+from icage.geometry.least_opening import NoOpeningError, followed_opening, sliding_room
 from icage.hand import HandShape
 from icage.outline import Outline
 from sim.config import SimConfig
-from sim.contact_types import Supports, supports
 from sim.scene import Scene
 
 GEOMETRY: Final = (

@@ -11,7 +11,7 @@ from icage.cage import GraspMinimum, Puncture
 from icage.contact_space.exploration import Exploration, Plane
 from icage.contact_space.kernels.forest import persistence
 from icage.contact_space.target import ContactTarget
-from icage.statics import free_fingers
+from icage.geometry.statics import free_fingers
 from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU
 
 

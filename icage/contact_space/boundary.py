@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.exterior import without_straight_vertices
+from icage.geometry.exterior import without_straight_vertices
 from icage.outline import Outline
 
 

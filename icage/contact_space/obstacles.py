@@ -13,7 +13,7 @@ import shapely
 from icage.arrays import BoolArray, FloatArray
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.third_finger import Parallelogram
-from icage.convex import merge_convex, triangulate
+from icage.geometry.convex import merge_convex, triangulate
 from icage.hand import HandShape
 
 NODED = 1e-11

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.exterior import WALL, exterior_pieces
+from icage.geometry.exterior import WALL, exterior_pieces
 from icage.hand import HandShape
 from icage.outline import Outline
 

@@ -14,8 +14,8 @@ import icage.contact_space.surroundings as surroundings
 import icage.solver
 from icage.agreement import disagreements
 from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
-from icage.exterior import BOX, Pieces
 from icage.formats.case_json import read_case
+from icage.geometry.exterior import BOX, Pieces
 from icage.planner import plan
 from models import CASES
 

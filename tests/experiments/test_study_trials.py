@@ -30,12 +30,12 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.errors import IcageError
 from icage.formats.case_json import Case, read_case
+from icage.geometry.contact_types import supports
 from icage.hand import HandShape, Placement
 from icage.membership import TARGET, query
 from icage.outline import Outline
 from icage.planner import plan
 from models import case_paths
-from sim.contact_types import supports
 from sim.judge import grasp_errors
 from sim.outcome import ClosingOutcomes
 from sim.watch import SETTLED

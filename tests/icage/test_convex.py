@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
 
-from icage.convex import merge_convex, orientation, triangulate
 from icage.errors import GeometryError
+from icage.geometry.convex import merge_convex, orientation, triangulate
 
 
 def star(seed: int, corners: int) -> shapely.Polygon:

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from icage.geometry.contact_types import supports
 from icage.outline import Outline
 from sim.closing import close
-from sim.contact_types import supports
 from sim.form_closure import form_closure, touches, wrench_matrix
 from sim.play import clearance, measure_play, opened, predicted_play
 from sim.shake import HELD_SHIFT, PUSH, PUSH_TIME, SHAKES, pushes, random_wrenches, shake

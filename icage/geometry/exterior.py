@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from icage.arrays import FloatArray, IntArray
-from icage.convex import merge_convex, triangulate
+from icage.geometry.convex import merge_convex, triangulate
 from icage.hand import HandShape
 from icage.kernels.straight import corners
 from icage.outline import Outline

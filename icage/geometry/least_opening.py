@@ -12,10 +12,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
+from icage.geometry.contact_types import feet
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
-from sim.contact_types import feet
 
 FEASIBLE: Final = 1e-6
 """[diameter] Constraints may be missed by this; the planner has the last word."""
