@@ -24,8 +24,8 @@ import mujoco
 import numpy as np
 
 from benchmarks.planner import timed
-from experiments.starts import draw_starts
 from icage.planner import plan
+from icage.sampling import draw_starts
 from sim.approach import approached
 from sim.batch import close_many
 from sim.closing import data_at

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.stats import binomtest
 
 from experiments.condition_figure import draw_counterexample
-from experiments.region_condition import ConditionReport, sample_condition
+from icage.cells.paper_condition import ConditionReport, sample_condition
 from icage.formats.case_json import read_case
 from icage.planner import plan
 

@@ -17,13 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
+from icage.cells.membership import query
+from icage.cells.regions import caging_regions
+from icage.cells.solver import search
+from icage.cells.target import contacts_as_configuration, find_target
 from icage.grasp_search import Bench, Wanted
-from icage.membership import query
 from icage.outline import Outline
 from icage.planner import plan
-from icage.regions import caging_regions
-from icage.solver import search
-from icage.target import contacts_as_configuration, find_target
 
 BASELINE = Path(__file__).with_name("planner_baseline.json")
 QUERIES = 100_000

@@ -13,8 +13,8 @@ import time
 
 import numpy as np
 
-from experiments.starts import draw_starts
 from icage.planner import plan
+from icage.sampling import draw_starts
 from sim.attack import attack
 from sim.batch import close_many
 from sim.held_hand import held_model

@@ -23,11 +23,11 @@ from matplotlib.figure import Figure
 
 from benchmarks.planner import star, targets, timed
 from experiments.drawing.palette import FINGERS
+from icage.cells.solver import Terrain, search
+from icage.cells.target import contacts_as_configuration, find_target
 from icage.contact_space.exploration import Plane, explore_from
 from icage.contact_space.target import find_contact_target
 from icage.hand import HandShape
-from icage.solver import Terrain, search
-from icage.target import contacts_as_configuration, find_target
 from icage.tolerance import TARGET_SHIFT, TARGET_TURN
 
 BASELINE = Path(__file__).with_name("two_engines_baseline.json")

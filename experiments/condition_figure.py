@@ -16,7 +16,7 @@ from experiments.figures import FIGURE_SETTINGS
 from experiments.whole_files import whole_file
 from icage.arrays import FloatArray
 from icage.cage import Cage, Puncture
-from icage.regions import caging_regions
+from icage.cells.regions import caging_regions
 
 _STRIP = 44.0
 """[pt]"""

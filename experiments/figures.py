@@ -18,8 +18,8 @@ from experiments.drawing.plan_view import draw_plan_view, frame_of
 from experiments.drawing.sheet import Bounds, Sheet, lay_out
 from experiments.whole_files import whole_file
 from icage.cage import Cage, Puncture
+from icage.cells.regions import FingerRegion, caging_regions
 from icage.errors import InputError
-from icage.regions import FingerRegion, caging_regions
 
 FORMATS = (".svg", ".png")
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from experiments.disc_case import physical_case
 from experiments.inputs import find_case
-from experiments.starts import StartSet, draw_starts
 from icage.geometry.contact_types import supports
+from icage.sampling import StartSet, draw_starts
 from sim.config import SimConfig
 from sim.friction import friction_table
 from sim.quasi_static import CHANGES, compare

@@ -8,7 +8,7 @@ from typing import Any
 import shapely
 
 from icage.cage import Cage, SearchLog
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 
 def plan_document(

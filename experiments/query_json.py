@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from icage.membership import VERDICTS, Answers
+from icage.cells.membership import VERDICTS, Answers
 
 _SHOWN = 20
 """Rows of a summary; the rest is counted."""

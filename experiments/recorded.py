@@ -21,10 +21,10 @@ import shapely
 
 from experiments.versions import versions
 from icage.cage import Cage, GraspMinimum
+from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
-from icage.regions import FingerRegion
 from sim.batch import close_many
 from sim.config import SimConfig
 from sim.judge import OUTCOMES, Verdicts, judge

@@ -13,13 +13,13 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from experiments.starts import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
 from icage.agreement import disagreements
 from icage.cage import Cage, Puncture
 from icage.contact_space.engine import CONTACT_SPACE
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan
+from icage.sampling import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
 from sim.batch import close_many
 from sim.config import SimConfig
 from sim.judge import OUTCOMES, Verdicts, judge

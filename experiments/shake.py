@@ -13,14 +13,14 @@ from typing import Final
 import numpy as np
 
 from experiments.disc_case import PhysicalCase
-from experiments.starts import SamplingError, draw_starts
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.cells.membership import TARGET, query
 from icage.errors import IcageError
 from icage.geometry.contact_types import Supports, supports
 from icage.hand import Placement
 from icage.kernels.locate import depth_inside
-from icage.membership import TARGET, query
+from icage.sampling import SamplingError, draw_starts
 from sim.batch import close_many
 from sim.config import SimConfig
 from sim.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix

@@ -7,10 +7,10 @@ from pathlib import Path
 from experiments.progress import stage_bar
 from experiments.recorded import Rerun, recorded_cage, recorded_regions
 from experiments.replay import Recorded, Replay, Run
-from experiments.starts import Starts
 from experiments.video import film
 from experiments.whole_files import whole_file
 from icage.formats.case_json import Case
+from icage.sampling import Starts
 
 
 def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:

@@ -21,7 +21,7 @@ from experiments.drawing.hand_view import HandView, window_on
 from experiments.drawing.shapes import tidied
 from experiments.mp4 import write_mp4
 from experiments.replay import Replay, Report, Run
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 from sim.camera import RenderingUnavailable, find_backend, render_frames
 from sim.stage import Decor, View
 

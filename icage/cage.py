@@ -8,9 +8,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from icage.arrays import FloatArray
+from icage.cells.solver import Search, Tree
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
-from icage.solver import Search, Tree
 
 Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
 

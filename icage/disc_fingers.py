@@ -17,10 +17,10 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
-from icage.engine import Engine, Look
 from icage.errors import GeometryError
 from icage.finger import Offsets, check_disc_contacts, directions_on_arcs, offsets
 from icage.hand import HandShape
+from icage.method import Engine, Look
 from icage.outline import Outline
 from icage.tolerance import (
     LEVEL,

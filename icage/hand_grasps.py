@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
+from icage.cells.kernels.search import TIE
+from icage.cells.kernels.tree import lowest_cells
+from icage.cells.solver import Configuration, Terrain
+from icage.cells.target import is_local_minimum, plateau_through
 from icage.errors import InputError
 from icage.hand import HandShape
-from icage.kernels.search import TIE
-from icage.kernels.tree import lowest_cells
 from icage.outline import Outline
-from icage.solver import Configuration, Terrain
-from icage.target import is_local_minimum, plateau_through
 from icage.tolerance import DEPTH_CUT, SAME_POINT
 
 MOST_PIECES = 250

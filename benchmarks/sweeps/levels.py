@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from icage.cells.solver import Terrain, search
+from icage.cells.target import contacts_as_configuration, find_target
 from icage.finger import directions_on_arcs, offsets
 from icage.hand import HandShape
 from icage.outline import Outline
-from icage.solver import Terrain, search
-from icage.target import contacts_as_configuration, find_target
 
 Floats = NDArray[np.float64]
 

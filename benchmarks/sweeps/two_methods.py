@@ -23,11 +23,11 @@ from numpy.random import Generator
 from benchmarks.sweeps.runner import Judge, Outcome, options, report, run
 from icage.agreement import difference
 from icage.cage import Cage
+from icage.cells.sublevels import births_and_merges
 from icage.contact_space.engine import CONTACT_SPACE
 from icage.contact_space.exploration import Plane
 from icage.contact_space.sublevel import sublevels
 from icage.hand import HandShape
-from icage.hand_sublevels import births_and_merges
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Ring

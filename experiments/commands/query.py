@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
         placements = read_placements(Path(args.placements))
 
     from experiments.query_json import query_document, query_summary
-    from icage.membership import query  # only now: it takes a second to load
+    from icage.cells.membership import query  # only now: it takes a second to load
     from icage.planner import plan
 
     cage = plan(case.outline, case.contacts, case.finger_radius)

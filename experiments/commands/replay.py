@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     from experiments.progress import stage_bar
     from experiments.replay import replay  # only now: engine and planner take a second to load
     from experiments.replay_files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
-    from experiments.starts import SamplingError
+    from icage.sampling import SamplingError
 
     check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
     name = args.case if shipped else cases[0].name

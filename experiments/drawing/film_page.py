@@ -15,7 +15,7 @@ from experiments.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_IN
 from experiments.drawing.plots import Box, Curve, Level, Plot
 from experiments.words import END_WORDS, VERDICT_WORDS
 from icage.cage import Cage
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 if TYPE_CHECKING:
     from experiments.clips import Clip

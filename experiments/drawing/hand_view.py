@@ -26,8 +26,8 @@ from experiments.drawing.palette import (
 )
 from experiments.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
+from icage.cells.regions import FingerRegion
 from icage.hand import Placement
-from icage.regions import FingerRegion
 from sim.scene import Scene
 from sim.stage import View
 

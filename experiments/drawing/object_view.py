@@ -16,7 +16,7 @@ from experiments.drawing.plots import Box
 from experiments.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
 from icage.cage import Cage
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 _DETAIL = 2.2
 """[1] Show only the hand's surroundings if that makes them larger by this."""

@@ -17,7 +17,7 @@ from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, 
 from experiments.drawing.shapes import as_path
 from experiments.drawing.sheet import View
 from icage.cage import Cage, Puncture
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 _DOT = 2.6
 """[pt] Radius of a point finger's dot."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.engine import ContactLook, ContactSpace
 from icage.contact_space.exploration import Exploration, Plane
@@ -20,7 +21,6 @@ from icage.hand import HandShape
 from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline
 from icage.planner import plan
-from icage.regions import FingerRegion, caging_regions
 from icage.tolerance import TARGET_SHIFT, TARGET_TURN
 
 _ARCS = (2, 3, 4, 8, 16)

@@ -16,11 +16,11 @@ import numpy as np
 
 from experiments.disc_case import PhysicalCase
 from experiments.replay import Run
-from experiments.starts import SamplingError, Starts, draw_starts, has_rest
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
+from icage.cells.membership import ESCAPES, OTHER, Answers, query
 from icage.kernels.locate import depth_inside
-from icage.membership import ESCAPES, OTHER, Answers, query
+from icage.sampling import SamplingError, Starts, draw_starts, has_rest
 from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
 from sim.outcome import ClosingOutcomes
 from sim.scene import Scene

@@ -17,8 +17,8 @@ from icage.agreement import disagreements
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.contact_space.engine import ContactSpace
-from icage.engine import Engine
 from icage.formats.case_json import Case, read_case
+from icage.method import Engine
 from icage.planner import plan
 from sim.attack import Attacks
 from sim.batch import close_many

@@ -12,9 +12,9 @@ from experiments.study.config import StudyConfig
 from experiments.study.distributions import Distribution
 from experiments.study.shard import Study
 from experiments.versions import versions
+from icage.cells.membership import VERDICTS, query
 from icage.errors import InputError
 from icage.formats.case_json import Case
-from icage.membership import VERDICTS, query
 from icage.outline import Outline
 from icage.planner import plan
 

@@ -26,7 +26,7 @@ from experiments.study.rows import target_trials
 from experiments.words import NOT_CLOSED
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 FEWEST: Final = 3
 """[closings] A hexagon with fewer is drawn pale."""

@@ -22,7 +22,7 @@ from experiments.drawing.sheet import Bounds
 from experiments.study.pictures import Page
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 _DOT: Final = 2.6
 """[pt] Least radius of a finger."""

@@ -19,7 +19,7 @@ from experiments.study.pictures import MARGIN, ROW, Page
 from experiments.study.shown import number
 from experiments.words import NOT_CLOSED
 from icage.cage import Cage
-from icage.regions import FingerRegion
+from icage.cells.regions import FingerRegion
 
 Key = tuple[str, str]
 """What is drawn, and what it means."""

@@ -14,12 +14,12 @@ from typing import Final
 
 import numpy as np
 
-from experiments.starts import Box, StartSet, draw_starts
 from experiments.study.config import StudyConfig
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
+from icage.sampling import Box, StartSet, draw_starts
 
 BLOCK: Final = 250
 """[placement] Drawn together; a start depends on the seed and its number, not on the shard."""

@@ -15,7 +15,6 @@ import pyarrow.parquet as pq
 from experiments.progress import stage_bar
 from experiments.recorded import RecordingError
 from experiments.replay import Recorded, Replay, Run
-from experiments.starts import Starts
 from experiments.study.document import study_of
 from experiments.study.folder import SHARDS, TRIALS, read_document
 from experiments.study.rows import table_of
@@ -23,6 +22,7 @@ from experiments.study.shard import Ran, Study, run_trials, worlds_of
 from experiments.versions import versions
 from experiments.whole_files import whole_file
 from icage.arrays import FloatArray
+from icage.sampling import Starts
 from sim.judge import OUTCOMES, Verdicts
 from sim.scene import Scene
 from sim.varied import Worlds, own_model, settings

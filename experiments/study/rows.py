@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from experiments.study.shard import STUDY_OUTCOMES, Ran, Study
 from icage.arrays import BoolArray, FloatArray
-from icage.membership import VERDICTS
+from icage.cells.membership import VERDICTS
 from sim.judge import OUTCOMES, TARGET
 
 

@@ -18,8 +18,8 @@ from experiments.study.variants import Key, Variant, Variants
 from experiments.words import NOT_CLOSED
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
+from icage.cells.membership import COLLIDES, Answers, query
 from icage.formats.case_json import Case
-from icage.membership import COLLIDES, Answers, query
 from icage.tolerance import COLLISION
 from sim.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
 from sim.outcome import ClosingOutcomes

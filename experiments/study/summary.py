@@ -18,7 +18,7 @@ from experiments.study.shard import STUDY_OUTCOMES
 from experiments.study.shown import percent
 from experiments.words import NOT_CLOSED
 from icage.arrays import BoolArray, FloatArray
-from icage.membership import VERDICTS
+from icage.cells.membership import VERDICTS
 
 BINS: Final = 10
 """Of a variable that is not on a grid, with as many trials each as any other."""

@@ -22,7 +22,7 @@ __all__ = ["CONTACT_SPACE", "ContactLook", "ContactSpace"]
 
 @dataclass(frozen=True, slots=True)
 class ContactLook:
-    """A target on one polygon and the search from it. See ``icage.engine.Look``."""
+    """A target on one polygon and the search from it. See ``icage.method.Look``."""
 
     target: ContactTarget
     found: Exploration

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-import icage.cells
+import icage.cells.method
+import icage.cells.solver
 import icage.contact_space.exploration as exploration
 import icage.contact_space.surroundings as surroundings
-import icage.solver
 from icage.agreement import disagreements
 from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import read_case
@@ -51,13 +51,13 @@ def test_a_pass_off_by_1e_5_in_contact_space_is_seen(monkeypatch: pytest.MonkeyP
 
 
 def test_a_pass_off_by_1e_5_in_the_cells_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    explore = icage.solver.explore
+    explore = icage.cells.solver.explore
 
     def off(*args: Any) -> Any:
         outcome, level, *rest = explore(*args)
         return outcome, level * (1.0 + 1e-5), *rest
 
-    monkeypatch.setattr(icage.solver, "explore", off)
+    monkeypatch.setattr(icage.cells.solver, "explore", off)
     assert differing() == list(NAMES)
 
 
@@ -81,7 +81,9 @@ def without_diagonal(exterior: Callable[..., Any], number: int) -> Callable[...,
     return shut
 
 
-@pytest.mark.parametrize("module", [surroundings, icage.solver], ids=["contact space", "cells"])
+@pytest.mark.parametrize(
+    "module", [surroundings, icage.cells.solver], ids=["contact space", "cells"]
+)
 def test_a_missing_diagonal_is_seen(module: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     exterior = module.exterior_pieces
     seen = 0

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import shapely
 
-from experiments.region_condition import sample_condition
+from icage.cells.membership import VERDICTS, query
+from icage.cells.paper_condition import sample_condition
+from icage.cells.regions import caging_regions
 from icage.formats.case_json import read_case
-from icage.membership import VERDICTS, query
 from icage.planner import plan
-from icage.regions import caging_regions
 from models import CASES
 
 

@@ -127,7 +127,7 @@ def test_a_query_that_names_too_little_is_caught(
     sound: PhysicalCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The query forgets the target: every closing that ends there was not named."""
-    monkeypatch.setattr("icage.membership.Answers.grasps_of", lambda *_: ())
+    monkeypatch.setattr("icage.cells.membership.Answers.grasps_of", lambda *_: ())
     found = failures(sound, CLOSE)
     assert any("had not named" in line for line in found), found
 

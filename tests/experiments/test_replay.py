@@ -14,10 +14,10 @@ import pytest
 from experiments import replay as replays
 from experiments.replay import Replay, replay, run_failures
 from experiments.replay_files import JSON, REGIONS, TRIALS, trial_table
-from experiments.starts import Starts, draw_starts
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from icage.hand import Placement
+from icage.sampling import Starts, draw_starts
 from models import CASES, case_paths
 from tests.cli.runner import Result, here
 from tests.experiments.small import t_case, write_case
@@ -167,7 +167,7 @@ def test_every_limit_is_looked_at(done: Replay, field: str, value: float, words:
 def test_a_set_too_small_to_draw_from_fails_the_run_and_leaves_nothing(
     tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ):
-    from experiments import starts
+    from icage import sampling as starts
 
     monkeypatch.setattr(starts, "TRIES_PER_START", 0)
     case = write_case(t_case(), tmp_path / "t.json")

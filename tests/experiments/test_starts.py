@@ -7,12 +7,12 @@ import pytest
 import shapely
 from scipy.stats import ks_2samp
 
-from experiments import starts
-from experiments.starts import SamplingError, StartSet, draw_starts, has_rest, safe_level
+from icage import sampling as starts
 from icage.arrays import FloatArray
 from icage.cage import Cage
-from icage.membership import TARGET, query
-from icage.regions import caging_regions
+from icage.cells.membership import TARGET, query
+from icage.cells.regions import caging_regions
+from icage.sampling import SamplingError, StartSet, draw_starts, has_rest, safe_level
 from tests.experiments.small import cage_of
 
 SETS: list[tuple[str, StartSet]] = [

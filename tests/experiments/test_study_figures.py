@@ -34,9 +34,9 @@ from experiments.study.pictures import WIDE, Page, settings
 from experiments.study.shown import WORDS, merged, percent
 from experiments.study.summary import summary
 from experiments.study.variables import VARIABLES
+from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import Placement
-from icage.regions import FingerRegion
 from tests.experiments.small import cage_of, t_case
 
 VARY = {

@@ -28,11 +28,11 @@ from experiments.study.variables import VARIABLES
 from experiments.study.variants import boundary_noise
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.cells.membership import TARGET, query
 from icage.errors import IcageError
 from icage.formats.case_json import Case, read_case
 from icage.geometry.contact_types import supports
 from icage.hand import HandShape, Placement
-from icage.membership import TARGET, query
 from icage.outline import Outline
 from icage.planner import plan
 from models import case_paths

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
+from icage.cells.kernels.search import explore
 from icage.kernels.compiled import TOOLS, compiled, kernel_digest
-from icage.kernels.search import explore
 
 SCRIPT = """
 from icage.outline import Outline

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from icage.membership import VERDICTS, query
+from icage.cells.membership import VERDICTS, query
 from tests.oracles.planar_closing import close_hand
 from tests.planner.wandering import Solved, as_configurations, grasp_at, solved, wander
 

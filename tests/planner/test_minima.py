@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from icage.cells.membership import query
 from icage.hand import Placement
 from icage.hand_grasps import grasps_of_hand
-from icage.membership import query
 from tests.oracles.geometry import Floats
 from tests.oracles.minima import all_minima
 from tests.planner.wandering import grasp_at, solved

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from icage.cage import Puncture
+from icage.cells.membership import VERDICTS, query
 from icage.hand import Placement
-from icage.membership import VERDICTS, query
 from models import CASES
 from tests.oracles.geometry import Floats
 from tests.oracles.planar_closing import close_hand

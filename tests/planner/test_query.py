@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from icage.membership import VERDICTS, query
+from icage.cells.membership import VERDICTS, query
 from models import CASES
 from tests.planner.wandering import solved, wander
 

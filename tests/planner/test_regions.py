@@ -7,8 +7,8 @@ import pytest
 import shapely
 from shapely import Polygon
 
-from icage.membership import query
-from icage.regions import FingerRegion, caging_regions, outer_bounds
+from icage.cells.membership import query
+from icage.cells.regions import FingerRegion, caging_regions, outer_bounds
 from tests.oracles.geometry import Floats
 from tests.planner.wandering import Solved, solved, wander
 

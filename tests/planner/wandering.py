@@ -10,8 +10,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from icage.cage import Cage
+from icage.cells.membership import VERDICTS, query
 from icage.hand import Placement
-from icage.membership import VERDICTS, query
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Floats, Ring, load_case, unit_hand

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icage.cage import Cage
+from icage.cells.membership import VERDICTS, query
 from icage.hand import Placement
-from icage.membership import VERDICTS, query
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Floats, Ring, unit_hand

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from experiments.starts import draw_starts
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
+from icage.sampling import draw_starts
 from sim.attack import DIVERGED, ESCAPED, HELD
 from sim.batch import close_many
 from sim.config import SimConfig

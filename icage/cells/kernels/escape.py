@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from icage.cells.kernels.search import SIGHT, explore
+from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
-from icage.kernels.search import SIGHT, explore
-from icage.kernels.shrink import pivot
 from icage.kernels.storage import hash_slot
 
 EMPTY = 1024

@@ -6,21 +6,21 @@ from dataclasses import dataclass
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, CageWork, not_a_cage
+from icage.cells.largest_sigma import largest_sigma_in
+from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
+from icage.cells.solver import Search, Terrain, Tree, merge_tree, search
+from icage.cells.target import Target, contacts_as_configuration, find_target
+from icage.cells.why_not import plateau_reason, why_not
 from icage.errors import GeometryError
 from icage.geometry.statics import ISOLATED, no_depth_reason
 from icage.hand import HandShape
-from icage.minima import escape_path, first_joining, grasps_and_punctures
 from icage.outline import Outline
-from icage.reach import largest_sigma_in
-from icage.solver import Search, Terrain, Tree, merge_tree, search
-from icage.target import Target, contacts_as_configuration, find_target
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE
-from icage.why import plateau_reason, why_not
 
 
 @dataclass(frozen=True, slots=True)
 class CellsLook:
-    """A target on one polygon and the search from it. See ``icage.engine.Look``."""
+    """A target on one polygon and the search from it. See ``icage.method.Look``."""
 
     target: Target
     found: Search
@@ -45,7 +45,7 @@ class CellsLook:
 
 
 class Cells:
-    """The engine behind ``plan``. See ``icage.engine.Engine``."""
+    """The engine behind ``plan``. See ``icage.method.Engine``."""
 
     @property
     def complete(self) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS, pass_value
+from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
-from icage.kernels.facet import MAX_BASE, MAX_ROWS, pass_value
-from icage.kernels.search import birth
 
 
 @compiled

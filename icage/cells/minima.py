@@ -8,9 +8,9 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
+from icage.cells.solver import Configuration, Search, Terrain, Tree, below_escape
+from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
-from icage.solver import Configuration, Search, Terrain, Tree, below_escape
-from icage.target import Target, plateau_through
 from icage.tolerance import DEPTH_CUT, LEVEL
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
+from icage.cells.kernels.tree import births
+from icage.cells.solver import Configuration, Terrain
+from icage.cells.target import cells_near, contacts_as_configuration
 from icage.geometry.statics import ISOLATED, contacts_reason, slide_reason
-from icage.kernels.tree import births
-from icage.solver import Configuration, Terrain
-from icage.target import cells_near, contacts_as_configuration
 from icage.tolerance import CONTACT_OFF
 
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage, CageWork
+from icage.cells.kernels.region import all_sandwiches, least_points
+from icage.cells.solver import Terrain
 from icage.errors import InputError
-from icage.kernels.region import all_sandwiches, least_points
-from icage.solver import Terrain
 from icage.tolerance import REGION_LEVEL
 
 Polygons: TypeAlias = NDArray[np.object_]

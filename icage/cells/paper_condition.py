@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from experiments.starts import region_points
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.cells.membership import VERDICTS, query
+from icage.cells.regions import caging_regions
 from icage.kernels.locate import depth_inside
-from icage.membership import VERDICTS, query
-from icage.regions import caging_regions
+from icage.sampling import region_points
 
 _CHUNK = 20_000
 _MOST_TRIES = 5_000_000

@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
+from icage.cells.kernels.convex_polygon import area, beyond, centroid, clip, hull
+from icage.cells.kernels.cut import boundary_point, cut, other_rows
 from icage.kernels.compiled import compiled
-from icage.kernels.convex_polygon import area, beyond, centroid, clip, hull
-from icage.kernels.cut import boundary_point, cut, other_rows
 
 CORNERS = 320
 """Room for the corners of either polygon."""

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
+from icage.cells.kernels.facet import MAX_BASE, finger_on_segment
+from icage.cells.kernels.search import CLOSED_IN, ESCAPED, GAVE_UP, explore
+from icage.cells.kernels.tree import births, merge
 from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
-from icage.kernels.facet import MAX_BASE, finger_on_segment
-from icage.kernels.search import CLOSED_IN, ESCAPED, GAVE_UP, explore
-from icage.kernels.tree import births, merge
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, LEVEL, PASS_ERROR
 

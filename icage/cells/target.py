@@ -12,10 +12,10 @@ from itertools import product
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
+from icage.cells.kernels.tree import births
+from icage.cells.solver import Configuration, Terrain
 from icage.geometry.exterior import Pieces
 from icage.hand import HandShape
-from icage.kernels.tree import births
-from icage.solver import Configuration, Terrain
 from icage.tolerance import (
     DEPTH_CUT,
     PLATEAU,

@@ -14,11 +14,11 @@ import numpy as np
 
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage, CageWork
+from icage.cells.kernels.escape import escape_levels, new_memory, shrinkable
+from icage.cells.kernels.tree import find_at
+from icage.cells.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.errors import InputError, PlacementError
-from icage.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
-from icage.kernels.tree import find_at
-from icage.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.tolerance import COLLISION, LEVEL
 
 VERDICTS: Final = ("target", "caged", "other", "escapes", "collision")

@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
+from icage.cells.kernels.facet import MAX_BASE, MAX_EDGES, finger_on_segment
+from icage.cells.kernels.sandwich import CORNERS, sandwich
 from icage.kernels.compiled import compiled
-from icage.kernels.facet import MAX_BASE, MAX_EDGES, finger_on_segment
-from icage.kernels.sandwich import CORNERS, sandwich
 
 
 @compiled

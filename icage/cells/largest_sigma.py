@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import BoolArray, ComplexArray, FloatArray
+from icage.cells.solver import Search
 from icage.geometry.exterior import Pieces
-from icage.solver import Search
 
 _INSIDE = 1e-9
 

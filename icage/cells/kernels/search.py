@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS, finger_on_segment, pass_value
+from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
-from icage.kernels.facet import MAX_BASE, MAX_ROWS, finger_on_segment, pass_value
-from icage.kernels.shrink import pivot
 from icage.kernels.storage import (
     grown_floats,
     grown_ints,

@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
+from icage.cells.kernels.tree import all_passes, merge
+from icage.cells.solver import Terrain
 from icage.errors import InputError
 from icage.hand import HandShape
-from icage.kernels.tree import all_passes, merge
 from icage.outline import Outline
-from icage.solver import Terrain
 from icage.tolerance import DEPTH_CUT
 
 MOST_PIECES = 80

@@ -16,9 +16,9 @@ import math
 
 import numpy as np
 
+from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, min_norm, min_norm_careful
 from icage.kernels import double_double as dd
 from icage.kernels.compiled import compiled
-from icage.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, min_norm, min_norm_careful
 
 MAX_EDGES = 12
 """Most edges of a merged piece: bounds the number of rows below."""

@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 
 from icage.arrays import BoolArray, FloatArray, read_only
 from icage.cage import Cage
+from icage.cells.membership import TARGET, query
+from icage.cells.regions import outer_bounds
 from icage.errors import GeometryError, IcageError
 from icage.kernels.locate import depth_inside
-from icage.membership import TARGET, query
-from icage.regions import outer_bounds
 
 StartSet = Literal["guaranteed", "rest", "cage"]
 

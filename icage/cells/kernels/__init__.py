@@ -1,0 +1,1 @@
+"""Compiled loops of the cells' method: plain functions on arrays."""
