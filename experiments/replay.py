@@ -15,7 +15,7 @@ import numpy as np
 
 from icage.agreement import disagreements
 from icage.cage import Cage, Puncture
-from icage.contact_space.engine import CONTACT_SPACE
+from icage.contact_space.method import CONTACT_SPACE
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan

@@ -24,8 +24,8 @@ from benchmarks.sweeps.runner import Judge, Outcome, options, report, run
 from icage.agreement import difference
 from icage.cage import Cage
 from icage.cells.sublevels import births_and_merges
-from icage.contact_space.engine import CONTACT_SPACE
 from icage.contact_space.exploration import Plane
+from icage.contact_space.method import CONTACT_SPACE
 from icage.contact_space.sublevel import sublevels
 from icage.hand import HandShape
 from icage.outline import Outline

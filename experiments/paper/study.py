@@ -11,8 +11,8 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.boundary import Boundary
-from icage.contact_space.engine import ContactLook, ContactSpace
 from icage.contact_space.exploration import Exploration, Plane
+from icage.contact_space.method import ContactLook, ContactSpace
 from icage.errors import InputError
 from icage.finger import directions_on_arcs, offsets
 from icage.formats.case_json import Case

@@ -16,7 +16,7 @@ from experiments.shake import ShakeError, Shaken, shake_case
 from icage.agreement import disagreements
 from icage.arrays import FloatArray
 from icage.cage import Cage
-from icage.contact_space.engine import ContactSpace
+from icage.contact_space.method import ContactSpace
 from icage.formats.case_json import Case, read_case
 from icage.method import Engine
 from icage.planner import plan

@@ -10,7 +10,7 @@ import pytest
 
 from icage.cage import Cage
 from icage.cells.membership import query
-from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
+from icage.contact_space.method import CONTACT_SPACE, ContactSpace
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from icage.planner import plan

@@ -13,7 +13,7 @@ import icage.cells.solver
 import icage.contact_space.exploration as exploration
 import icage.contact_space.surroundings as surroundings
 from icage.agreement import disagreements
-from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
+from icage.contact_space.method import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import read_case
 from icage.geometry.exterior import BOX, Pieces
 from icage.planner import plan

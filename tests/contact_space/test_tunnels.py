@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from icage.contact_space.engine import CONTACT_SPACE, ContactSpace
+from icage.contact_space.method import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import Case, read_case
 from icage.planner import plan
 from models import CASES, HARD

@@ -23,7 +23,7 @@ from experiments.regress.document import row_document
 from experiments.regress.measure import Planned, Row, in_physics, plan_both
 from experiments.regress.run import one_case
 from experiments.regress.table import bottom_line, markdown, terminal
-from icage.contact_space.engine import ContactSpace
+from icage.contact_space.method import ContactSpace
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
