@@ -7,7 +7,7 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.method import CELLS
-from icage.disc_fingers import plan_discs
+from icage.discs.brackets import plan_discs
 from icage.hand import HandShape
 from icage.method import Engine
 from icage.outline import Outline

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from icage.cells.solver import Terrain, search
 from icage.cells.target import contacts_as_configuration, find_target
-from icage.finger import directions_on_arcs, offsets
+from icage.discs.offsets import directions_on_arcs, offsets
 from icage.hand import HandShape
 from icage.outline import Outline
 

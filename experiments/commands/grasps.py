@@ -133,7 +133,7 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
 
 
 def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatArray]:
-    from icage.finger import offsets
+    from icage.discs.offsets import offsets
     from icage.hand import HandShape
     from icage.hand_grasps import grasps_of_hand
 
@@ -146,10 +146,10 @@ def _planned(
     thing: Object, radius: float, contacts: list[FloatArray], aim: str, top: int
 ) -> list[Cage]:
     """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
+    from icage.discs.true_curve import refine
     from icage.errors import GraspError
     from icage.hand import HandShape
     from icage.planner import plan
-    from icage.true_curve import refine
 
     cages: list[Cage] = []
     for points in contacts:

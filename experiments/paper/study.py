@@ -13,8 +13,8 @@ from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.exploration import Exploration, Plane
 from icage.contact_space.method import ContactLook, ContactSpace
+from icage.discs.offsets import directions_on_arcs, offsets
 from icage.errors import InputError
-from icage.finger import directions_on_arcs, offsets
 from icage.formats.case_json import Case
 from icage.geometry.statics import contacts_reason
 from icage.hand import HandShape

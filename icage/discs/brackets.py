@@ -17,8 +17,9 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
+from icage.discs.offsets import Offsets, check_disc_contacts, directions_on_arcs, offsets
+from icage.discs.true_curve import refine
 from icage.errors import GeometryError
-from icage.finger import Offsets, check_disc_contacts, directions_on_arcs, offsets
 from icage.hand import HandShape
 from icage.method import Engine, Look
 from icage.outline import Outline
@@ -30,7 +31,6 @@ from icage.tolerance import (
     TARGET_SHIFT,
     TARGET_TURN,
 )
-from icage.true_curve import refine
 
 RESOLUTIONS = (16, 24, 32)
 """Segments per quadrant at which sigma_first is always looked at."""
