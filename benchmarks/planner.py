@@ -21,7 +21,7 @@ from icage.cells.membership import query
 from icage.cells.regions import caging_regions
 from icage.cells.solver import search
 from icage.cells.target import contacts_as_configuration, find_target
-from icage.grasp_search import Bench, Wanted
+from icage.grasps.search import Bench, Wanted
 from icage.outline import Outline
 from icage.planner import plan
 

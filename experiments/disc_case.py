@@ -21,8 +21,8 @@ from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.geometry.least_opening import NoOpeningError, least_opening
+from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
-from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline
 from icage.planner import plan
 from sim.config import SimConfig

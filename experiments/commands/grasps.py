@@ -111,7 +111,7 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
     import numpy as np
 
     from experiments.progress import stage_bar
-    from icage.grasp_search import Wanted, best_grasps
+    from icage.grasps.search import Wanted, best_grasps
     from icage.hand import HandShape
 
     near = None
@@ -134,8 +134,8 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
 
 def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatArray]:
     from icage.discs.offsets import offsets
+    from icage.grasps.of_one_hand import grasps_of_hand
     from icage.hand import HandShape
-    from icage.hand_grasps import grasps_of_hand
 
     hand = HandShape.from_angles_deg(phi[0], phi[1])
     grown = offsets(thing.outline, radius, 8).inner if radius > 0.0 else thing.outline

@@ -17,11 +17,11 @@ from experiments.paper.page import (
 )
 from experiments.paper.study import Study
 from icage.arrays import FloatArray
-from icage.contact_features import EDGE, balanced_triples, features_of
 from icage.contact_space.equilibria import pair_grasps, three_finger_kind
 from icage.contact_space.sectors import concurrency_point, sector_at
 from icage.contact_space.third_finger import turn
 from icage.geometry.statics import free_fingers
+from icage.grasps.features import EDGE, balanced_triples, features_of
 
 Shown = tuple[str, FloatArray, tuple[int, ...]]
 """Words, contacts (3, 2), free fingers (0..2)."""

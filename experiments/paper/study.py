@@ -17,8 +17,8 @@ from icage.discs.offsets import directions_on_arcs, offsets
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.geometry.statics import contacts_reason
+from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
-from icage.hand_grasps import grasps_of_hand
 from icage.outline import Outline
 from icage.planner import plan
 from icage.tolerance import TARGET_SHIFT, TARGET_TURN

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from icage.cells.membership import query
+from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import Placement
-from icage.hand_grasps import grasps_of_hand
 from tests.oracles.geometry import Floats
 from tests.oracles.minima import all_minima
 from tests.planner.wandering import grasp_at, solved

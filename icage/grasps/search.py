@@ -21,10 +21,10 @@ from icage.arrays import FloatArray, IntArray
 from icage.cells.largest_sigma import largest_sigma_in
 from icage.cells.solver import Terrain, search
 from icage.cells.target import contacts_as_configuration, find_target
-from icage.contact_features import EDGE, VERTEX, Features, balanced_triples, features_of
 from icage.discs.offsets import offsets
 from icage.errors import GraspError, HandError, InputError
 from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
+from icage.grasps.features import EDGE, VERTEX, Features, balanced_triples, features_of
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.kernels.triples import contact_at, feasible_triples
+from icage.grasps.kernels.triples import contact_at, feasible_triples
 from icage.outline import Outline
 
 _REACH = 3.0

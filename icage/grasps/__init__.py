@@ -1,0 +1,1 @@
+"""Finding target grasps: the best ones of an outline, or all of one hand."""
