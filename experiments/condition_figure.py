@@ -13,10 +13,10 @@ from experiments.drawing.palette import INK, QUIET_INK
 from experiments.drawing.plan_view import draw_plan_view
 from experiments.drawing.sheet import lay_out
 from experiments.figures import FIGURE_SETTINGS
-from experiments.whole_files import whole_file
 from icage.arrays import FloatArray
 from icage.cage import Cage, Puncture
 from icage.cells.regions import caging_regions
+from icage.formats.whole_files import whole_file
 
 _STRIP = 44.0
 """[pt]"""

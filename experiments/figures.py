@@ -16,10 +16,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from experiments.drawing.caption import caption_lines, draw_caption, strip_height
 from experiments.drawing.plan_view import draw_plan_view, frame_of
 from experiments.drawing.sheet import Bounds, Sheet, lay_out
-from experiments.whole_files import whole_file
 from icage.cage import Cage, Puncture
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.errors import InputError
+from icage.formats.whole_files import whole_file
 
 FORMATS = (".svg", ".png")
 

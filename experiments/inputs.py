@@ -7,7 +7,7 @@ from pathlib import Path
 from experiments.options import reason
 from icage.errors import InputError
 from icage.formats.case_json import Case, Object, parse_unit, read_case, read_object
-from icage.formats.svg import read_svg
+from icage.formats.svg.outline import read_svg
 from models import case_path, object_names, outline_path
 
 

@@ -7,8 +7,8 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.whole_files import check_folder_writable, check_writable
 from icage.errors import InputError, OutputError
+from icage.formats.whole_files import check_folder_writable, check_writable
 
 UNITS = ("m", "mm", "cm")
 

@@ -18,13 +18,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.figures import draw_plan, figure_regions
-from experiments.json_out import write_json
-from experiments.plan_json import plan_document
 from experiments.replay import Replay, Report, Run, run_document
 from experiments.versions import versions
 from icage.cells.membership import VERDICTS, query
 from icage.cells.regions import FingerRegion
 from icage.errors import OutputError
+from icage.formats.json_out import write_json
+from icage.formats.plan_json import plan_document
 from sim.judge import OUTCOMES
 
 JSON, TRIALS, REGIONS, VIDEO = "replay.json", "trials.parquet", "regions.svg", "replay.mp4"

@@ -8,8 +8,8 @@ from experiments.progress import stage_bar
 from experiments.recorded import Rerun, recorded_cage, recorded_regions
 from experiments.replay import Recorded, Replay, Run
 from experiments.video import film
-from experiments.whole_files import whole_file
 from icage.formats.case_json import Case
+from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
 
 

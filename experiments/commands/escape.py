@@ -40,8 +40,8 @@ def run(args: argparse.Namespace) -> int:
     check_output("--json", args.json, *case.sources)
     from experiments.escape import escape  # only now: engine and planner take a second to load
     from experiments.escape_json import escape_document, escape_table
-    from experiments.json_out import write_json
     from experiments.progress import stage_bar
+    from icage.formats.json_out import write_json
 
     with stage_bar() as report:
         result = escape(case, args.attacks, args.seed, args.threads or 0, report)

@@ -72,8 +72,8 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Search, plan the winners, list them."""
     from experiments.inputs import find_object
-    from experiments.json_out import write_json
     from icage.errors import InputError
+    from icage.formats.json_out import write_json
 
     thing = find_object(args.object, args.width, args.unit)
     check_output("--json", args.json, *thing.sources)

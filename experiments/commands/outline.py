@@ -35,9 +35,9 @@ def run(args: argparse.Namespace) -> int:
     """Read the drawing and write its vertices."""
     from pathlib import Path
 
-    from experiments.json_out import write_json
     from icage.formats.case_json import FORMAT
-    from icage.formats.svg import read_svg
+    from icage.formats.json_out import write_json
+    from icage.formats.svg.outline import read_svg
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)

@@ -43,10 +43,10 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from experiments.inputs import case_file
-    from experiments.json_out import json_text, write_json
-    from experiments.plan_json import plan_document, plan_summary
     from icage.errors import InputError
     from icage.formats.case_json import read_case
+    from icage.formats.json_out import json_text, write_json
+    from icage.formats.plan_json import plan_document, plan_summary
 
     case = read_case(case_file(args.case))
     check_output("--json", args.json, *case.sources)

@@ -34,10 +34,10 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from experiments.inputs import case_file
-    from experiments.json_out import write_json
     from icage.errors import InputError
     from icage.formats.case_json import read_case
-    from icage.formats.placements import read_placements, read_placements_stream
+    from icage.formats.json_out import write_json
+    from icage.formats.placements_csv import read_placements, read_placements_stream
 
     case = read_case(case_file(args.case))
     check_output("--json", args.json, *case.sources, Path(args.placements))
@@ -48,8 +48,8 @@ def run(args: argparse.Namespace) -> int:
     else:
         placements = read_placements(Path(args.placements))
 
-    from experiments.query_json import query_document, query_summary
     from icage.cells.membership import query  # only now: it takes a second to load
+    from icage.formats.query_json import query_document, query_summary
     from icage.planner import plan
 
     cage = plan(case.outline, case.contacts, case.finger_radius)

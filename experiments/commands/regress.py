@@ -52,7 +52,6 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         check_folder("--out", Path(args.out), ("replay.json", "trials.parquet"))
 
-    from experiments.json_out import write_json  # only now: engine and planner take time to load
     from experiments.progress import stage_bar
     from experiments.regress.baseline import baseline_path
     from experiments.regress.junit import junit
@@ -60,7 +59,8 @@ def run(args: argparse.Namespace) -> int:
     from experiments.regress.record import write_records
     from experiments.regress.run import new_baseline, regress
     from experiments.regress.table import markdown, terminal
-    from experiments.whole_files import whole_file
+    from icage.formats.json_out import write_json  # only now: engine and planner take time to load
+    from icage.formats.whole_files import whole_file
 
     level = "fast" if args.fast else "full" if args.full else "default"
     folder = None if args.cases is None else Path(args.cases)

@@ -73,7 +73,7 @@ def _told(args: argparse.Namespace, done: Any, whole: dict[str, Any], lines: Ite
     """Write the document, print the lines; 1 if anything differs on the same versions."""
     import sys
 
-    from experiments.json_out import write_json
+    from icage.formats.json_out import write_json
 
     if args.json is not None:
         write_json(whole, args.json)

@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
     import sys
 
     from experiments.inputs import find_case
-    from experiments.json_out import write_json
+    from icage.formats.json_out import write_json
 
     case = find_case(args.case)
     check_output("--json", args.json, *case.sources)

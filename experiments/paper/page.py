@@ -30,7 +30,7 @@ from experiments.drawing.palette import (
 )
 from experiments.drawing.shapes import as_path
 from experiments.paper.study import Study
-from experiments.whole_files import whole_file
+from icage.formats.whole_files import whole_file
 
 FORMATS = ("svg", "pdf", "png")
 WIDTH = 7.0

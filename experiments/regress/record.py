@@ -11,12 +11,12 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from experiments.json_out import write_json
-from experiments.plan_json import plan_document
 from experiments.regress.measure import Row
 from experiments.replay import Replay, run_document
 from experiments.replay_files import JSON, TRIALS, trial_table, whole_folder
 from experiments.versions import versions
+from icage.formats.json_out import write_json
+from icage.formats.plan_json import plan_document
 
 Record = tuple[list[dict[str, Any]], pa.Table | None]
 """Run documents and a row per trial, of one case."""

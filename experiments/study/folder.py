@@ -20,9 +20,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from experiments.json_out import json_text
-from experiments.whole_files import whole_file
 from icage.errors import InputError, OutputError
+from icage.formats.json_out import json_text
+from icage.formats.whole_files import whole_file
 
 try:
     import fcntl

@@ -15,8 +15,8 @@ from matplotlib.ticker import FuncFormatter
 
 from experiments.drawing.palette import INK, QUIET_INK, RULE
 from experiments.figures import FIGURE_SETTINGS, FORMATS
-from experiments.whole_files import whole_file
 from icage.errors import InputError
+from icage.formats.whole_files import whole_file
 
 WIDE: Final = 504.0
 """[pt] A page as wide as both columns of a journal."""

@@ -20,8 +20,8 @@ from experiments.study.folder import SHARDS, TRIALS, read_document
 from experiments.study.rows import table_of
 from experiments.study.shard import Ran, Study, run_trials, worlds_of
 from experiments.versions import versions
-from experiments.whole_files import whole_file
 from icage.arrays import FloatArray
+from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
 from sim.judge import OUTCOMES, Verdicts
 from sim.scene import Scene

@@ -28,8 +28,8 @@ from experiments.study.folder import (
 from experiments.study.run import Backend, on_threads, run_study
 from experiments.study.shard import Study
 from experiments.study.summary import sentence, summary
-from experiments.whole_files import whole_file
 from icage.formats.case_json import Case, read_case
+from icage.formats.whole_files import whole_file
 from models import case_paths, object_names
 
 MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"

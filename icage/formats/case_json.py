@@ -12,10 +12,10 @@ import numpy as np
 
 from icage.arrays import FloatArray, read_only
 from icage.errors import CaseError, FormatError, InputError
-from icage.formats.contacts import check_contacts
+from icage.formats.case_contacts import check_contacts
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
-from icage.formats.svg import Unit, read_svg
+from icage.formats.svg.outline import Unit, read_svg
 from icage.outline import MAX_VERTICES, Outline
 
 FORMAT: Final = "icage-case/1"

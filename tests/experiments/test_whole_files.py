@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from experiments.replay_files import ALL, JSON, VIDEO, whole_folder
-from experiments.whole_files import check_writable, whole_file
 from icage.errors import OutputError
+from icage.formats.whole_files import check_writable, whole_file
 
 
 def test_a_file_takes_its_place_when_it_is_whole(tmp_path: Path):

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from icage.formats.svg import read_svg
+from icage.formats.svg.outline import read_svg
 from icage.outline import Outline
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icage.errors import PlacementError
-from icage.formats.placements import parse_placements, read_placements, read_placements_stream
+from icage.formats.placements_csv import parse_placements, read_placements, read_placements_stream
 
 HEADER = "x,y,theta,sigma\n"
 finite = st.floats(-1e100, 1e100)
@@ -90,7 +90,7 @@ def test_folders_and_missing_files(tmp_path: Path):
 
 
 def test_too_many_rows_are_refused(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("icage.formats.placements.MAX_ROWS", 3)
+    monkeypatch.setattr("icage.formats.placements_csv.MAX_ROWS", 3)
     parse_placements(HEADER + "0,0,0,1\n" * 3, "t")
     with pytest.raises(PlacementError, match="more than 3 rows"):
         parse_placements(HEADER + "0,0,0,1\n" * 4, "t")

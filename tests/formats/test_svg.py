@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from icage.errors import FormatError, InputError
-from icage.formats.svg import Unit, read_svg
+from icage.formats.svg.outline import Unit, read_svg
 from tests.formats.drawings import drawing, ellipse, hausdorff, placed, read
 
 TRIANGLE = '<path d="M0 0 L40 0 L40 10 Z"/>'

@@ -11,7 +11,7 @@ import shapely
 
 from experiments.cli import main
 from icage.formats.case_json import read_case, read_object
-from icage.formats.svg import read_svg
+from icage.formats.svg.outline import read_svg
 from models import case_path, case_paths, object_names, outline_path
 
 OBJECTS = object_names()

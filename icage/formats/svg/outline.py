@@ -17,12 +17,12 @@ import shapely
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError, InputError
-from icage.formats.curves import Curve, flatten
 from icage.formats.files import read_bytes
-from icage.formats.fill import filled
-from icage.formats.simplify import simplified
-from icage.formats.svg_shapes import Shape, drawn_shapes
-from icage.formats.svg_tree import MAX_BYTES, drawable
+from icage.formats.svg.curves import Curve, flatten
+from icage.formats.svg.fill import filled
+from icage.formats.svg.shapes import Shape, drawn_shapes
+from icage.formats.svg.simplify import simplified
+from icage.formats.svg.tree import MAX_BYTES, drawable
 from icage.outline import LARGEST_COORDINATE, Outline
 
 Unit = Literal["m", "mm", "cm"]

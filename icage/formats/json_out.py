@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.whole_files import whole_file
+from icage.formats.whole_files import whole_file
 
 
 def json_text(document: dict[str, Any]) -> str:
