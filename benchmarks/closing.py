@@ -30,7 +30,7 @@ from sim.approach import approached
 from sim.batch import close_many
 from sim.closing import data_at
 from sim.judge import judge
-from sim.scene import Scene
+from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle
 
 BASELINE = Path(__file__).with_name("closing_baseline.json")

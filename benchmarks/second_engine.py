@@ -17,11 +17,11 @@ from icage.planner import plan
 from icage.sampling import draw_starts
 from sim.attack import attack
 from sim.batch import close_many
-from sim.held_hand import held_model
 from sim.judge import judge
 from sim.random_attack import RandomDriver, RandomPull
 from sim.second.attack import random_attack_second
 from sim.second.closing import close_many_second
+from sim.world.held_hand import held_model
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
 from tests.sim.test_second import on_the_way_out
 

@@ -9,13 +9,13 @@ import numpy as np
 from experiments.disc_case import PhysicalCase
 from icage.arrays import FloatArray
 from sim.attack import HELD, Attacks, attack
-from sim.engine import MjModel
 from sim.guided_attack import GuidedDriver, object_path
-from sim.held_hand import held_model
 from sim.measure import AttackAt
 from sim.random_attack import RandomDriver
 from sim.rigid_search import clear_poses, search_many
-from sim.scene import Scene
+from sim.world.engine import MjModel
+from sim.world.held_hand import held_model
+from sim.world.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,8 @@ from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
-from sim.config import SimConfig
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 RADII: Final = (0.02, 0.01, 0.03)
 """[diameter] Of the discs that point fingers become: the first that leaves a cage."""

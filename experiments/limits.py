@@ -19,10 +19,10 @@ from experiments.disc_case import physical_case
 from experiments.inputs import find_case
 from icage.geometry.contact_types import supports
 from icage.sampling import StartSet, draw_starts
-from sim.config import SimConfig
 from sim.friction import friction_table
 from sim.quasi_static import CHANGES, compare
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 FRICTION_TIME: Final = 1.0
 """[s] Jammed objects creep and never count as still: the ends after this and after twice this."""

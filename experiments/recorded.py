@@ -26,10 +26,10 @@ from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from sim.batch import close_many
-from sim.config import SimConfig
 from sim.judge import OUTCOMES, Verdicts, judge
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 JSON, TRIALS = "replay.json", "trials.parquet"
 

@@ -21,10 +21,10 @@ from icage.formats.case_json import Case
 from icage.planner import plan
 from icage.sampling import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
 from sim.batch import close_many
-from sim.config import SimConfig
 from sim.judge import OUTCOMES, Verdicts, judge
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 DEEPEST_MOVING: Final = 1e-3
 """[diameter] A finger deeper than this inside the object while closing is no contact any more."""

@@ -22,13 +22,13 @@ from icage.hand import Placement
 from icage.kernels.locate import depth_inside
 from icage.sampling import SamplingError, draw_starts
 from sim.batch import close_many
-from sim.config import SimConfig
 from sim.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix
 from sim.judge import OUTCOMES, Verdicts, judge
 from sim.outcome import ClosingOutcomes
 from sim.play import Play, measure_play, opened
-from sim.scene import Scene
 from sim.shake import Shake, shake
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 DELTAS: Final = (1e-4, 1e-3, 1e-2)
 """[1] Openings above sigma_0 at which the play of a three-edge grasp is measured."""

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.scene import Scene
+from sim.world.scene import Scene
 
 LEAD: Final = 2e-3
 """[diameter] Travel left to the fastest finger: five steps or more, the speed settles in two."""

@@ -22,10 +22,10 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.engine import MjModel, mj, no_log
-from sim.held_hand import held_batch
-from sim.scene import Scene
-from sim.seen import depths, fingers_seen, hull_of, separated
+from sim.world.engine import MjModel, mj, no_log
+from sim.world.hand_in_object import depths, fingers_seen, hull_of, separated
+from sim.world.held_hand import held_batch
+from sim.world.scene import Scene
 
 RUNNING, ESCAPED, HELD, DIVERGED = range(4)
 ATTACK_ENDINGS = ("running", "escaped", "held", "diverged")

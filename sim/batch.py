@@ -14,10 +14,10 @@ import numpy as np
 from icage.arrays import FloatArray
 from sim.approach import approached
 from sim.closing import outcomes
-from sim.engine import Batch, mj, no_log
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
 from sim.watch import Watch
+from sim.world.engine import Batch, mj, no_log
+from sim.world.scene import Scene
 
 BATCH = 1024
 """[trial] Closings stepped together: enough to hide Python's share of a step."""

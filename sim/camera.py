@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from icage.arrays import FloatArray
 from icage.errors import IcageError
-from sim.engine import mj
-from sim.scene import Scene
 from sim.stage import Decor, View, dressed
+from sim.world.engine import mj
+from sim.world.scene import Scene
 
 BACKENDS: Final = ("egl", "osmesa")
 

@@ -11,10 +11,10 @@ from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from sim.approach import approached
 from sim.contacts import finger_forces
-from sim.engine import MjData, mj, no_log
 from sim.outcome import ClosingOutcome, ClosingOutcomes
-from sim.scene import Scene
 from sim.watch import DIVERGED, Watch
+from sim.world.engine import MjData, mj, no_log
+from sim.world.scene import Scene
 
 
 def close(scene: Scene, start: Placement) -> ClosingOutcome:

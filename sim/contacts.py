@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.engine import MjData, MjModel, mj
+from sim.world.engine import MjData, MjModel, mj
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from scipy.optimize import linprog
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
 from icage.geometry.contact_types import ONE_NORMAL, Supports
-from sim.engine import MjData, MjModel, mj
-from sim.scene import Scene
+from sim.world.engine import MjData, MjModel, mj
+from sim.world.scene import Scene
 
 RANK: Final = 1e-3
 """[1] Singular values below this share of the largest are 0. Three edges give 1e-6 (how well the

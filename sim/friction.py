@@ -23,8 +23,8 @@ from icage.errors import InputError
 from icage.geometry.contact_types import Supports, feet, supports
 from icage.hand import Placement
 from sim.batch import close_many
-from sim.scene import Scene
 from sim.watch import DIVERGED, SETTLED
+from sim.world.scene import Scene
 
 TOUCHES: Final = 1e-4
 """[diameter] A disc this near its target edge touches it: friction is regularized, so an end may

@@ -21,7 +21,7 @@ from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.random_attack import PUSH, opening_force
-from sim.scene import Scene
+from sim.world.scene import Scene
 
 FINE = 2e-3
 """[diameter] Spacing of the points of a path."""

@@ -18,9 +18,9 @@ from icage.arrays import FloatArray
 from icage.errors import GeometryError
 from icage.geometry.contact_types import Supports, on_others, on_supports
 from icage.hand import Placement
-from sim.engine import mj, no_log
-from sim.rigid_hand import disc_depths, rigid_data, rigid_model
-from sim.scene import Scene
+from sim.world.engine import mj, no_log
+from sim.world.rigid_hand import disc_depths, rigid_data, rigid_model
+from sim.world.scene import Scene
 
 WAY: Final = 0.2
 """[s] The torque is such that the free object would turn through its play in this time: a gentle

@@ -20,11 +20,11 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from sim.batch import close_many
-from sim.config import SimConfig
 from sim.judge import Grasp, Tolerances, judge
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
 from sim.watch import SETTLED, TIMED_OUT
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 NEAR: Final = Tolerances(0.2, 0.5, 0.2, 0.5)
 """[diameter, rad] An end is counted to the nearest grasp, if this near: how far it moved within

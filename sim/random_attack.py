@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from sim.scene import Scene
+from sim.world.scene import Scene
 
 PUSH = 1.003
 """[1] A hand held open wants this much more than its stop allows: enough force, little speed."""

@@ -15,9 +15,9 @@ from icage.errors import InputError
 from icage.hand import Placement
 from sim.closing import data_at
 from sim.contacts import finger_forces
-from sim.engine import mj, no_log
-from sim.scene import Scene
 from sim.watch import ENDINGS, Watch
+from sim.world.engine import mj, no_log
+from sim.world.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

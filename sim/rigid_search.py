@@ -20,8 +20,8 @@ from numba import njit
 
 from icage.arrays import FloatArray
 from sim.attack import ESCAPED, HELD, Attacks
-from sim.scene import Scene
-from sim.seen import depths, hull_of, separated, turn_back
+from sim.world.hand_in_object import depths, hull_of, separated, turn_back
+from sim.world.scene import Scene
 
 CLEAR = 1e-5
 """[diameter] A finger this deep still counts as clear: poses of the simulator touch."""

@@ -1,6 +1,6 @@
 """The shake test: is the object held by fingers locked at the size they closed to?
 
-The hand is made rigid (``sim.rigid_hand``) and the object pushed: a force at its centroid in 8
+The hand is made rigid (``sim.world.rigid_hand``) and the object pushed: a force at its centroid in 8
 directions, a torque both ways, each from rest in the grasp, then a random shake of many wrenches
 one after another. The habit of grasp benchmarks, in the plane.
 
@@ -17,9 +17,9 @@ from typing import Final
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.engine import MjData, MjModel, mj, no_log
-from sim.rigid_hand import disc_depths, rigid_data, rigid_model
-from sim.scene import Scene
+from sim.world.engine import MjData, MjModel, mj, no_log
+from sim.world.rigid_hand import disc_depths, rigid_data, rigid_model
+from sim.world.scene import Scene
 
 PUSH: Final = 0.1
 """[drive_force] Size of a force; a torque is this times the radius of gyration."""

@@ -15,10 +15,10 @@ import trimesh
 
 from icage.arrays import FloatArray
 from icage.hand import Placement
-from sim.engine import MjBody, MjSpec, mj
-from sim.hand_model import FINGER_COLOURS, looks_only
-from sim.object_model import OBJECT_COLOUR
-from sim.scene import Scene
+from sim.world.engine import MjBody, MjSpec, mj
+from sim.world.hand_model import FINGER_COLOURS, looks_only
+from sim.world.object_model import OBJECT_COLOUR
+from sim.world.scene import Scene
 
 CAMERA: Final = "top"
 _TARGET_COLOUR: Final = (0.98, 0.55, 0.05, 0.99)

@@ -17,8 +17,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.engine import MjModel, mj
-from sim.scene import Scene
+from sim.world.engine import MjModel, mj
+from sim.world.scene import Scene
 
 _OBJECT: Final = slice(3, 6)
 """Degrees of freedom of the object; the fingers' slides come first."""

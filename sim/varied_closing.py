@@ -16,11 +16,11 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from sim.approach import approached
-from sim.engine import Batch, MjModel, mj, no_log
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
 from sim.varied import Setting, Worlds, expand, own_model, settings
 from sim.watch import RUNNING, SETTLED, Watch
+from sim.world.engine import Batch, MjModel, mj, no_log
+from sim.world.scene import Scene
 
 LOOK_EVERY: Final = 5
 """[step] Between two looks at a closing: depth, force and stillness are seen this often."""

@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.scene import Scene
-from sim.seen import depths, fingers_seen
+from sim.world.hand_in_object import depths, fingers_seen
+from sim.world.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -28,8 +28,8 @@ from experiments.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
 from icage.cells.regions import FingerRegion
 from icage.hand import Placement
-from sim.scene import Scene
 from sim.stage import View
+from sim.world.scene import Scene
 
 _RAIL = 1.5
 """[diameter] Drawn length of the rails; the view cuts them off."""

@@ -23,7 +23,7 @@ from icage.kernels.locate import depth_inside
 from icage.sampling import SamplingError, Starts, draw_starts, has_rest
 from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
+from sim.world.scene import Scene
 
 StartsOf = Literal["guaranteed", "rest", "outside"]
 SETS: Final[tuple[StartsOf, ...]] = ("guaranteed", "rest", "outside")

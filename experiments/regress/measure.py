@@ -25,8 +25,8 @@ from sim.batch import close_many
 from sim.judge import Tolerances
 from sim.outcome import ClosingOutcomes
 from sim.random_attack import RandomPull
-from sim.scene import Scene
 from sim.watch import SETTLED, TIMED_OUT
+from sim.world.scene import Scene
 
 SEED: Final = 0
 

@@ -27,7 +27,7 @@ from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.closing import data_at
 from sim.contacts import contacts
-from sim.engine import mj
+from sim.world.engine import mj
 
 _STRIP: Final = 70.0
 """[pt] Below the picture, for words."""

@@ -24,8 +24,8 @@ from icage.arrays import FloatArray
 from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
 from sim.judge import OUTCOMES, Verdicts
-from sim.scene import Scene
 from sim.varied import Worlds, own_model, settings
+from sim.world.scene import Scene
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,7 +16,7 @@ from experiments.study.folder import StudyFolder, read_shards
 from experiments.study.rows import table_of, target_trials
 from experiments.study.shard import Study, run_trials
 from experiments.study.spans import missing
-from sim.engine import no_log
+from sim.world.engine import no_log
 
 SHARD: Final = 500
 """[trial] In a shard, unless asked otherwise: a few seconds of work."""

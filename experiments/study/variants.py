@@ -21,8 +21,8 @@ from icage.geometry.contact_types import Supports, supports
 from icage.geometry.least_opening import NoOpeningError, followed_opening, sliding_room
 from icage.hand import HandShape
 from icage.outline import Outline
-from sim.config import SimConfig
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 GEOMETRY: Final = (
     "outline_scale", "outline_noise", "finger_radius", "phi_1", "phi_2", "linkage_play"

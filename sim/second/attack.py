@@ -8,8 +8,8 @@ from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.attack import DIVERGED, RUNNING, Attacks, Lookout
 from sim.random_attack import RandomDriver, RandomPull
-from sim.scene import Scene
 from sim.second.world import SecondConfig, World
+from sim.world.scene import Scene
 
 
 def random_attack_second(

@@ -7,9 +7,9 @@ import numpy as np
 from icage.arrays import FloatArray
 from sim.approach import approached
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
 from sim.second.world import SecondConfig, World
 from sim.watch import DIVERGED, Watch
+from sim.world.scene import Scene
 
 
 def close_many_second(

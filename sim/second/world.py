@@ -1,4 +1,4 @@
-"""One hand and one object in Chipmunk2D: the other engine's ``sim.scene``.
+"""One hand and one object in Chipmunk2D: the other engine's ``sim.world.scene``.
 
 Frames, units and numbers are those of the ``Scene`` it is made from: the palm's frame, diameter 1,
 mass 1, moment ``gyration_squared``, a viscous table, the same true outline in convex pieces, discs
@@ -31,9 +31,9 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.scene import Scene
 from sim.second.engine import Body, Space, chipmunk
 from sim.watch import TOUCHING
+from sim.world.scene import Scene
 
 ARM: Final = 1e7
 """[diameter] R: tips leave their rail by 1 / 2 R, and doubles resolve R to 2e-9."""

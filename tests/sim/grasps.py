@@ -13,8 +13,8 @@ from icage.arrays import FloatArray
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from models import CASES
-from sim.config import SimConfig
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 
 @dataclass(frozen=True)

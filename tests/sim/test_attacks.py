@@ -12,12 +12,12 @@ from icage.errors import InputError
 from icage.planner import plan
 from sim.attack import DIVERGED, ESCAPED, HELD, Attacks, attack
 from sim.guided_attack import GuidedDriver, GuidedPull, object_path
-from sim.held_hand import held_batch, held_model
 from sim.measure import measure
 from sim.random_attack import RandomDriver, RandomPull
 from sim.rigid_search import CLEAR, clear_poses, search_many, search_tree
-from sim.scene import Scene
-from sim.seen import hull_of, separated
+from sim.world.hand_in_object import hull_of, separated
+from sim.world.held_hand import held_batch, held_model
+from sim.world.scene import Scene
 from tests.sim.grasps import t_shape
 
 

@@ -8,7 +8,7 @@ import shapely
 
 from icage.outline import Outline
 from models import CASES
-from sim.convex_pieces import MAX_PIECE_EDGES, convex_pieces
+from sim.world.convex_pieces import MAX_PIECE_EDGES, convex_pieces
 from tests.sim.grasps import case_outline
 
 NAMES = sorted(file.stem for file in CASES.glob("*.json"))

@@ -10,9 +10,9 @@ import pytest
 
 from icage.errors import InputError
 from icage.hand import HandShape
-from sim.config import SimConfig
-from sim.hand_file import hand_file, hand_mjcf
-from sim.hand_model import HandKinematics, build_hand
+from sim.world.config import SimConfig
+from sim.world.hand_file import hand_file, hand_mjcf
+from sim.world.hand_model import HandKinematics, build_hand
 
 SHAPES = [
     HandShape.from_angles_deg(33.0, 130.0),

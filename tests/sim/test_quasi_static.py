@@ -10,9 +10,9 @@ import pytest
 
 from sim.batch import close_many
 from sim.closing import data_at
-from sim.config import SimConfig
 from sim.outcome import ClosingOutcomes
 from sim.quasi_static import CHANGES, SLOWER, Change, compare
+from sim.world.config import SimConfig
 from tests.sim.grasps import l_shape, starts_near, t_shape, triangle
 
 GRASPS = [triangle, l_shape, t_shape]

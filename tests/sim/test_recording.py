@@ -14,11 +14,11 @@ from icage.errors import InputError
 from icage.hand import Placement
 from sim.camera import BACKENDS, RenderingUnavailable, find_backend, render_frames
 from sim.closing import close
-from sim.config import SimConfig
-from sim.hand_model import FINGER_COLOURS
-from sim.object_model import OBJECT_COLOUR
 from sim.recording import record
 from sim.stage import Decor, View, dressed
+from sim.world.config import SimConfig
+from sim.world.hand_model import FINGER_COLOURS
+from sim.world.object_model import OBJECT_COLOUR
 from tests.sim.grasps import starts_near, t_shape
 
 GRASP = t_shape()
@@ -43,7 +43,7 @@ def test_pressing_fingers_balance_on_the_object() -> None:
     """At rest the contact forces on the object sum to zero, so those on the fingers do too."""
     from sim.closing import data_at
     from sim.contacts import finger_forces
-    from sim.engine import mj
+    from sim.world.engine import mj
 
     scene = GRASP.scene()
     data = data_at(scene, scene.start_positions(START.as_array())[0])

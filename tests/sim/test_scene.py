@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from icage.hand import HandShape
 from icage.outline import Outline
-from sim.config import SimConfig
-from sim.object_model import HALF_HEIGHT, NormalObject, bipyramid, polar_moment
-from sim.scene import Scene
+from sim.world.config import SimConfig
+from sim.world.object_model import HALF_HEIGHT, NormalObject, bipyramid, polar_moment
+from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, shipped, t_shape, triangle
 
 GRASPS = [t_shape(), l_shape(), triangle()]

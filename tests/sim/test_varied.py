@@ -15,14 +15,14 @@ from icage.errors import InputError
 from sim import varied_closing
 from sim.approach import approached
 from sim.batch import close_many
-from sim.config import SimConfig
 from sim.contacts import finger_forces
 from sim.judge import grasp_errors
 from sim.outcome import ClosingOutcomes
-from sim.scene import Scene
 from sim.varied import Worlds, expand, mean_distance, own_model, settings
 from sim.varied_closing import VariedOutcomes, close_varied
 from sim.watch import ENDINGS
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle
 
 

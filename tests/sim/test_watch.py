@@ -10,9 +10,9 @@ import shapely
 from icage.arrays import FloatArray
 from icage.outline import Outline
 from sim.approach import LEAD, approached, first_touch
-from sim.scene import Scene
-from sim.seen import depths
 from sim.watch import RUNNING, Watch
+from sim.world.hand_in_object import depths
+from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle
 
 GRASPS = [t_shape(), l_shape(), triangle()]

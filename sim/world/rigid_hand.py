@@ -1,7 +1,7 @@
 """A hand locked at one size: three discs fixed in the palm, the object free among them.
 
 The fingers lose their slides, so nothing of the hand gives: what moves is the object alone, with
-qpos = x, y, turn as in ``sim.object_model``.
+qpos = x, y, turn as in ``sim.world.object_model``.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.engine import MjData, MjModel, mj
-from sim.scene import Scene
-from sim.seen import depths
+from sim.world.engine import MjData, MjModel, mj
+from sim.world.hand_in_object import depths
+from sim.world.scene import Scene
 
 
 def rigid_model(scene: Scene, sigma: float) -> MjModel:

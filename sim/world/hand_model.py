@@ -29,8 +29,8 @@ import numpy as np
 from icage.arrays import FloatArray, read_only
 from icage.errors import InputError
 from icage.hand import HandShape
-from sim.config import SimConfig
-from sim.engine import MjBody, MjGeom, MjSpec, mj
+from sim.world.config import SimConfig
+from sim.world.engine import MjBody, MjGeom, MjSpec, mj
 
 OBJECT_BIT, FINGER_BIT = 1, 2
 """contype of the two sides: fingers touch only the object, never one another. (The planner's

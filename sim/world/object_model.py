@@ -9,10 +9,10 @@ import trimesh
 
 from icage.arrays import FloatArray, read_only
 from icage.outline import Outline
-from sim.config import SimConfig
-from sim.convex_pieces import convex_pieces
-from sim.engine import MjSpec, mj
-from sim.hand_model import FINGER_BIT, OBJECT_BIT, contact_parameters
+from sim.world.config import SimConfig
+from sim.world.convex_pieces import convex_pieces
+from sim.world.engine import MjSpec, mj
+from sim.world.hand_model import FINGER_BIT, OBJECT_BIT, contact_parameters
 
 OBJECT_COLOUR = (0.86, 0.72, 0.45, 1.0)
 

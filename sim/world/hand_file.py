@@ -1,6 +1,6 @@
-"""Write the hand as MJCF for reading: ``python -m sim.hand_file`` renews ``models/hand/hand.xml``.
+"""Write the hand as MJCF for reading: ``python -m sim.world.hand_file`` renews ``models/hand/hand.xml``.
 
-The simulation never reads the file; it builds the hand of each case anew (``sim.hand_model``).
+The simulation never reads the file; it builds the hand of each case anew (``sim.world.hand_model``).
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import Final
 
 import models
 from icage.hand import HandShape
-from sim.config import SimConfig
-from sim.hand_model import HandKinematics, build_hand
+from sim.world.config import SimConfig
+from sim.world.hand_model import HandKinematics, build_hand
 
 SHOWN_PHI_DEG: Final = (33.0, 130.0)
 """The hand of the paper's pliers. [Bunis2018, Sec. VII-B]"""

@@ -13,8 +13,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.engine import Batch, MjModel
-from sim.scene import Scene
+from sim.world.engine import Batch, MjModel
+from sim.world.scene import Scene
 
 _FREE = -1e3
 """[diameter] Lower end of the tendon's range: never met."""

@@ -14,10 +14,10 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.hand import HandShape
 from icage.outline import Outline
-from sim.config import SimConfig
-from sim.engine import MjModel, MjSpec
-from sim.hand_model import HandKinematics, add_instruments, build_hand
-from sim.object_model import NormalObject, add_object
+from sim.world.config import SimConfig
+from sim.world.engine import MjModel, MjSpec
+from sim.world.hand_model import HandKinematics, add_instruments, build_hand
+from sim.world.object_model import NormalObject, add_object
 
 POSITIONS = 6
 """qpos = three finger slides, then the object's x, y and turn."""

@@ -1,0 +1,1 @@
+"""Hand and object as one compiled model, in normalized units."""
