@@ -26,10 +26,10 @@ import numpy as np
 from benchmarks.planner import timed
 from icage.planner import plan
 from icage.sampling import draw_starts
-from sim.approach import approached
-from sim.batch import close_many
-from sim.closing import data_at
-from sim.judge import judge
+from sim.closing.approach import approached
+from sim.closing.batch import close_many
+from sim.closing.judge import judge
+from sim.closing.one import data_at
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle
 

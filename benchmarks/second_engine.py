@@ -16,8 +16,8 @@ import numpy as np
 from icage.planner import plan
 from icage.sampling import draw_starts
 from sim.attack import attack
-from sim.batch import close_many
-from sim.judge import judge
+from sim.closing.batch import close_many
+from sim.closing.judge import judge
 from sim.random_attack import RandomDriver, RandomPull
 from sim.second.attack import random_attack_second
 from sim.second.closing import close_many_second

@@ -26,8 +26,8 @@ import numpy as np
 from experiments.study.run import SHARD, on_threads, run_study
 from experiments.study.session import Session, session_of
 from experiments.study.shard import run_trials
-from sim.approach import approached
-from sim.varied_closing import LOOK_EVERY
+from sim.closing.approach import approached
+from sim.closing.varied_shapes import LOOK_EVERY
 from sim.world.engine import Batch
 
 BASELINE = Path(__file__).with_name("study_baseline.json")

@@ -10,8 +10,8 @@ import numpy as np
 from experiments.replay import Replay, Run
 from icage.arrays import FloatArray
 from icage.hand import Placement
-from sim.judge import OUTCOMES
-from sim.recording import Recording, record
+from sim.closing.judge import OUTCOMES
+from sim.closing.recording import Recording, record
 
 FPS: Final = 30
 
@@ -40,7 +40,7 @@ class Clip:
     time:
         (F,), share of the motion that has passed, 0 to 1.
     qpos, placements:
-        (F, 6), (F, 4) as in ``sim.recording.Recording``.
+        (F, 6), (F, 4) as in ``sim.closing.recording.Recording``.
     forces:
         (F, 3), mean force on each finger over the last few frames: impacts ring faster than
         anyone can see.

@@ -19,8 +19,8 @@ from experiments.disc_case import physical_case
 from experiments.inputs import find_case
 from icage.geometry.contact_types import supports
 from icage.sampling import StartSet, draw_starts
+from sim.closing.quasi_static import CHANGES, compare
 from sim.friction import friction_table
-from sim.quasi_static import CHANGES, compare
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 

@@ -25,9 +25,9 @@ from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
-from sim.batch import close_many
-from sim.judge import OUTCOMES, Verdicts, judge
-from sim.outcome import ClosingOutcomes
+from sim.closing.batch import close_many
+from sim.closing.judge import OUTCOMES, Verdicts, judge
+from sim.closing.outcome import ClosingOutcomes
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 

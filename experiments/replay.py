@@ -20,9 +20,9 @@ from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan
 from icage.sampling import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
-from sim.batch import close_many
-from sim.judge import OUTCOMES, Verdicts, judge
-from sim.outcome import ClosingOutcomes
+from sim.closing.batch import close_many
+from sim.closing.judge import OUTCOMES, Verdicts, judge
+from sim.closing.outcome import ClosingOutcomes
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 

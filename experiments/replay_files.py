@@ -25,7 +25,7 @@ from icage.cells.regions import FingerRegion
 from icage.errors import OutputError
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
-from sim.judge import OUTCOMES
+from sim.closing.judge import OUTCOMES
 
 JSON, TRIALS, REGIONS, VIDEO = "replay.json", "trials.parquet", "regions.svg", "replay.mp4"
 ALL: Final = (JSON, TRIALS, REGIONS, VIDEO)

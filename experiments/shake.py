@@ -21,10 +21,10 @@ from icage.geometry.contact_types import Supports, supports
 from icage.hand import Placement
 from icage.kernels.locate import depth_inside
 from icage.sampling import SamplingError, draw_starts
-from sim.batch import close_many
+from sim.closing.batch import close_many
+from sim.closing.judge import OUTCOMES, Verdicts, judge
+from sim.closing.outcome import ClosingOutcomes
 from sim.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix
-from sim.judge import OUTCOMES, Verdicts, judge
-from sim.outcome import ClosingOutcomes
 from sim.play import Play, measure_play, opened
 from sim.shake import Shake, shake
 from sim.world.config import SimConfig

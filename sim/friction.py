@@ -22,8 +22,8 @@ from icage.arrays import BoolArray, FloatArray
 from icage.errors import InputError
 from icage.geometry.contact_types import Supports, feet, supports
 from icage.hand import Placement
-from sim.batch import close_many
-from sim.watch import DIVERGED, SETTLED
+from sim.closing.batch import close_many
+from sim.closing.step_check import DIVERGED, SETTLED
 from sim.world.scene import Scene
 
 TOUCHES: Final = 1e-4

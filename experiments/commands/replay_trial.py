@@ -115,7 +115,7 @@ def document(done: Rerun) -> dict[str, Any]:
 
 
 def _now(done: Rerun) -> dict[str, Any]:
-    from sim.judge import OUTCOMES
+    from sim.closing.judge import OUTCOMES
 
     closing, verdicts, size = done.closings[0], done.verdicts, done.trial.outline.diameter
     lost = OUTCOMES[int(verdicts.outcome[0])] == "diverged"

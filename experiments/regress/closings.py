@@ -21,8 +21,8 @@ from icage.cage import Cage
 from icage.cells.membership import ESCAPES, OTHER, Answers, query
 from icage.kernels.locate import depth_inside
 from icage.sampling import SamplingError, Starts, draw_starts, has_rest
-from sim.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
-from sim.outcome import ClosingOutcomes
+from sim.closing.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
+from sim.closing.outcome import ClosingOutcomes
 from sim.world.scene import Scene
 
 StartsOf = Literal["guaranteed", "rest", "outside"]

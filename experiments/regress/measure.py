@@ -21,11 +21,11 @@ from icage.formats.case_json import Case, read_case
 from icage.method import Engine
 from icage.planner import plan
 from sim.attack import Attacks
-from sim.batch import close_many
-from sim.judge import Tolerances
-from sim.outcome import ClosingOutcomes
+from sim.closing.batch import close_many
+from sim.closing.judge import Tolerances
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import SETTLED, TIMED_OUT
 from sim.random_attack import RandomPull
-from sim.watch import SETTLED, TIMED_OUT
 from sim.world.scene import Scene
 
 SEED: Final = 0

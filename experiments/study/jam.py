@@ -25,7 +25,7 @@ from experiments.study.replayed import StudyRerun, filmed_scene, rerun_trial
 from experiments.study.shard import worlds_of
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.closing import data_at
+from sim.closing.one import data_at
 from sim.contacts import contacts
 from sim.world.engine import mj
 

@@ -23,8 +23,8 @@ from experiments.versions import versions
 from icage.arrays import FloatArray
 from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
-from sim.judge import OUTCOMES, Verdicts
-from sim.varied import Worlds, own_model, settings
+from sim.closing.judge import OUTCOMES, Verdicts
+from sim.closing.varied import Worlds, own_model, settings
 from sim.world.scene import Scene
 
 

@@ -10,7 +10,7 @@ import pyarrow as pa
 from experiments.study.shard import STUDY_OUTCOMES, Ran, Study
 from icage.arrays import BoolArray, FloatArray
 from icage.cells.membership import VERDICTS
-from sim.judge import OUTCOMES, TARGET
+from sim.closing.judge import OUTCOMES, TARGET
 
 
 def table_of(study: Study, ran: Ran) -> pa.Table:

@@ -21,10 +21,10 @@ from icage.cage import Cage
 from icage.cells.membership import COLLIDES, Answers, query
 from icage.formats.case_json import Case
 from icage.tolerance import COLLISION
-from sim.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
-from sim.outcome import ClosingOutcomes
-from sim.varied import Worlds
-from sim.varied_closing import VariedOutcomes, close_varied
+from sim.closing.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.varied import Worlds
+from sim.closing.varied_shapes import VariedOutcomes, close_varied
 
 STUDY_OUTCOMES: Final = (*OUTCOMES, *NOT_CLOSED)
 

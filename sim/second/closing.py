@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.approach import approached
-from sim.outcome import ClosingOutcomes
+from sim.closing.approach import approached
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import DIVERGED, Watch
 from sim.second.world import SecondConfig, World
-from sim.watch import DIVERGED, Watch
 from sim.world.scene import Scene
 
 
@@ -17,7 +17,7 @@ def close_many_second(
 ) -> ClosingOutcomes:
     """Close from every start (N, 4) = x, y, theta, sigma in the object's frame, one by one.
 
-    The same start, motor, watch and end of a closing as ``sim.batch.close_many``.
+    The same start, motor, watch and end of a closing as ``sim.closing.batch.close_many``.
 
     Raises
     ------

@@ -36,9 +36,9 @@ from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from icage.planner import plan
 from models import case_paths
-from sim.judge import grasp_errors
-from sim.outcome import ClosingOutcomes
-from sim.watch import SETTLED
+from sim.closing.judge import grasp_errors
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import SETTLED
 from tests.experiments.small import cage_of, t_case
 from tests.sim.grasps import l_shape
 

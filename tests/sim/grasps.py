@@ -19,7 +19,7 @@ from sim.world.scene import Scene
 
 @dataclass(frozen=True)
 class KnownGrasp:
-    """A target with its disc radius; satisfies ``sim.judge.Grasp``."""
+    """A target with its disc radius; satisfies ``sim.closing.judge.Grasp``."""
 
     outline: Outline
     radius: float

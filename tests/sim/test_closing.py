@@ -10,11 +10,11 @@ import pytest
 
 from icage.hand import Placement
 from icage.outline import Outline
-from sim.batch import close_many
-from sim.closing import close, data_at
-from sim.judge import OUTCOMES, judge
-from sim.outcome import ClosingOutcomes
-from sim.watch import ENDINGS
+from sim.closing.batch import close_many
+from sim.closing.judge import OUTCOMES, judge
+from sim.closing.one import close, data_at
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import ENDINGS
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle

@@ -9,9 +9,9 @@ import pytest
 
 from icage.arrays import FloatArray
 from icage.hand import Placement
-from sim.judge import OUTCOMES, judge, trial_records
-from sim.outcome import ClosingOutcomes
-from sim.watch import ENDINGS
+from sim.closing.judge import OUTCOMES, judge, trial_records
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import ENDINGS
 from tests.sim.grasps import KnownGrasp, t_shape
 
 GRASP = t_shape()

@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from sim.batch import close_many
-from sim.closing import data_at
-from sim.outcome import ClosingOutcomes
-from sim.quasi_static import CHANGES, SLOWER, Change, compare
+from sim.closing.batch import close_many
+from sim.closing.one import data_at
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.quasi_static import CHANGES, SLOWER, Change, compare
 from sim.world.config import SimConfig
 from tests.sim.grasps import l_shape, starts_near, t_shape, triangle
 

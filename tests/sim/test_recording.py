@@ -13,8 +13,8 @@ import shapely
 from icage.errors import InputError
 from icage.hand import Placement
 from sim.camera import BACKENDS, RenderingUnavailable, find_backend, render_frames
-from sim.closing import close
-from sim.recording import record
+from sim.closing.one import close
+from sim.closing.recording import record
 from sim.stage import Decor, View, dressed
 from sim.world.config import SimConfig
 from sim.world.hand_model import FINGER_COLOURS
@@ -41,7 +41,7 @@ def test_recording_begins_at_the_start_and_ends_in_the_grasp() -> None:
 
 def test_pressing_fingers_balance_on_the_object() -> None:
     """At rest the contact forces on the object sum to zero, so those on the fingers do too."""
-    from sim.closing import data_at
+    from sim.closing.one import data_at
     from sim.contacts import finger_forces
     from sim.world.engine import mj
 
@@ -92,7 +92,7 @@ def test_staged_scene_only_adds_looks() -> None:
 
 def test_importing_the_simulation_leaves_the_graphics_alone() -> None:
     code = (
-        "import os, sim.camera, sim.batch, sim.recording; "
+        "import os, sim.camera, sim.closing.batch, sim.closing.recording; "
         "assert 'MUJOCO_GL' not in os.environ; print('ok')"
     )
     environment = {k: v for k, v in os.environ.items() if k != "MUJOCO_GL"}

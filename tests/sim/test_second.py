@@ -17,16 +17,16 @@ from icage.outline import Outline
 from icage.planner import plan
 from icage.sampling import draw_starts
 from sim.attack import DIVERGED, ESCAPED, HELD
-from sim.batch import close_many
+from sim.closing.batch import close_many
+from sim.closing.judge import judge
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import ENDINGS
 from sim.guided_attack import object_path
-from sim.judge import judge
-from sim.outcome import ClosingOutcomes
 from sim.random_attack import RandomPull
 from sim.second import engine
 from sim.second.attack import random_attack_second
 from sim.second.closing import close_many_second
 from sim.second.world import World
-from sim.watch import ENDINGS
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape

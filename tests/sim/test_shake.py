@@ -10,7 +10,7 @@ import pytest
 
 from icage.geometry.contact_types import supports
 from icage.outline import Outline
-from sim.closing import close
+from sim.closing.one import close
 from sim.form_closure import form_closure, touches, wrench_matrix
 from sim.play import clearance, measure_play, opened, predicted_play
 from sim.shake import HELD_SHIFT, PUSH, PUSH_TIME, SHAKES, pushes, random_wrenches, shake

@@ -12,15 +12,15 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import InputError
-from sim import varied_closing
-from sim.approach import approached
-from sim.batch import close_many
+from sim.closing import varied_shapes as varied_closing
+from sim.closing.approach import approached
+from sim.closing.batch import close_many
+from sim.closing.judge import grasp_errors
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import ENDINGS
+from sim.closing.varied import Worlds, expand, mean_distance, own_model, settings
+from sim.closing.varied_shapes import VariedOutcomes, close_varied
 from sim.contacts import finger_forces
-from sim.judge import grasp_errors
-from sim.outcome import ClosingOutcomes
-from sim.varied import Worlds, expand, mean_distance, own_model, settings
-from sim.varied_closing import VariedOutcomes, close_varied
-from sim.watch import ENDINGS
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle

@@ -9,8 +9,8 @@ import shapely
 
 from icage.arrays import FloatArray
 from icage.outline import Outline
-from sim.approach import LEAD, approached, first_touch
-from sim.watch import RUNNING, Watch
+from sim.closing.approach import LEAD, approached, first_touch
+from sim.closing.step_check import RUNNING, Watch
 from sim.world.hand_in_object import depths
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle

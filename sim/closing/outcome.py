@@ -8,7 +8,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
-from sim.watch import ENDINGS, Watch
+from sim.closing.step_check import ENDINGS, Watch
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +18,9 @@ class ClosingOutcome:
     Attributes
     ----------
     ending:
-        One of ``sim.watch.ENDINGS``.
+        One of ``sim.closing.step_check.ENDINGS``.
     steps:
-        Steps taken, each of ``SimConfig.time_step``, after the free travel (``sim.approach``).
+        Steps taken, each of ``SimConfig.time_step``, after the free travel (``sim.closing.approach``).
     penetration_max, penetration_rest:
         Deepest finger disc inside the true outline, while moving and after the last step.
     shape_error_max:
@@ -49,7 +49,7 @@ class ClosingOutcome:
 class ClosingOutcomes:
     """N closings: the arrays of ``ClosingOutcome``, with placements (N, 4) = x, y, theta, sigma.
 
-    ``ending`` holds codes into ``sim.watch.ENDINGS``. Rows of diverged closings hold whatever the
+    ``ending`` holds codes into ``sim.closing.step_check.ENDINGS``. Rows of diverged closings hold whatever the
     engine last had; nothing in them means anything.
     """
 

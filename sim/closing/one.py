@@ -1,6 +1,6 @@
 """Close the hand on the free object, one trial at a time: the plain loop.
 
-``sim.batch`` does the same for many trials on several threads, bit for bit.
+``sim.closing.batch`` does the same for many trials on several threads, bit for bit.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
-from sim.approach import approached
+from sim.closing.approach import approached
+from sim.closing.outcome import ClosingOutcome, ClosingOutcomes
+from sim.closing.step_check import DIVERGED, Watch
 from sim.contacts import finger_forces
-from sim.outcome import ClosingOutcome, ClosingOutcomes
-from sim.watch import DIVERGED, Watch
 from sim.world.engine import MjData, mj, no_log
 from sim.world.scene import Scene
 

@@ -19,10 +19,10 @@ from typing import Final
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.batch import close_many
-from sim.judge import Grasp, Tolerances, judge
-from sim.outcome import ClosingOutcomes
-from sim.watch import SETTLED, TIMED_OUT
+from sim.closing.batch import close_many
+from sim.closing.judge import Grasp, Tolerances, judge
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import SETTLED, TIMED_OUT
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 

@@ -12,10 +12,10 @@ from collections.abc import Callable
 import numpy as np
 
 from icage.arrays import FloatArray
-from sim.approach import approached
-from sim.closing import outcomes
-from sim.outcome import ClosingOutcomes
-from sim.watch import Watch
+from sim.closing.approach import approached
+from sim.closing.one import outcomes
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import Watch
 from sim.world.engine import Batch, mj, no_log
 from sim.world.scene import Scene
 

@@ -2,7 +2,7 @@
 
 Trials that share a scene run together on one model; the others, one model each, run together where
 their models have the same layout. Every trial is looked at every ``LOOK_EVERY`` steps. Its result
-depends on nothing but its own scene, world and start. Free travel is skipped (``sim.approach``)
+depends on nothing but its own scene, world and start. Free travel is skipped (``sim.closing.approach``)
 but on a tilted table, where the object slides meanwhile.
 """
 
@@ -15,10 +15,10 @@ from typing import Any, Final
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from sim.approach import approached
-from sim.outcome import ClosingOutcomes
-from sim.varied import Setting, Worlds, expand, own_model, settings
-from sim.watch import RUNNING, SETTLED, Watch
+from sim.closing.approach import approached
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import RUNNING, SETTLED, Watch
+from sim.closing.varied import Setting, Worlds, expand, own_model, settings
 from sim.world.engine import Batch, MjModel, mj, no_log
 from sim.world.scene import Scene
 

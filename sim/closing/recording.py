@@ -1,6 +1,6 @@
 """The trajectory of one closing at a frame rate: what a video or a plot needs.
 
-Unlike ``sim.closing`` the free travel is simulated too, so that the film shows it.
+Unlike ``sim.closing.one`` the free travel is simulated too, so that the film shows it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 from icage.arrays import FloatArray, read_only
 from icage.errors import InputError
 from icage.hand import Placement
-from sim.closing import data_at
+from sim.closing.one import data_at
+from sim.closing.step_check import ENDINGS, Watch
 from sim.contacts import finger_forces
-from sim.watch import ENDINGS, Watch
 from sim.world.engine import mj, no_log
 from sim.world.scene import Scene
 
@@ -35,7 +35,7 @@ class Recording:
     finger_forces:
         (F, 3), [drive_force], size of the contact force on each finger.
     ending:
-        One of ``sim.watch.ENDINGS``; "running" if ``max_frames`` cut it off.
+        One of ``sim.closing.step_check.ENDINGS``; "running" if ``max_frames`` cut it off.
     """
 
     time: FloatArray

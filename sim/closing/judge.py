@@ -16,8 +16,8 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from icage.outline import Outline
-from sim.outcome import ClosingOutcomes
-from sim.watch import DIVERGED, PINCHED, SETTLED, TIMED_OUT
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import DIVERGED, PINCHED, SETTLED, TIMED_OUT
 
 OUTCOMES = (
     "target",
