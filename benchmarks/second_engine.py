@@ -15,10 +15,10 @@ import numpy as np
 
 from icage.planner import plan
 from icage.sampling import draw_starts
-from sim.attack import attack
+from sim.attack.held import attack
+from sim.attack.random import RandomDriver, RandomPull
 from sim.closing.batch import close_many
 from sim.closing.judge import judge
-from sim.random_attack import RandomDriver, RandomPull
 from sim.second.attack import random_attack_second
 from sim.second.closing import close_many_second
 from sim.world.held_hand import held_model

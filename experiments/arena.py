@@ -8,11 +8,11 @@ import numpy as np
 
 from experiments.disc_case import PhysicalCase
 from icage.arrays import FloatArray
-from sim.attack import HELD, Attacks, attack
-from sim.guided_attack import GuidedDriver, object_path
-from sim.measure import AttackAt
-from sim.random_attack import RandomDriver
-from sim.rigid_search import clear_poses, search_many
+from sim.attack.guided import GuidedDriver, object_path
+from sim.attack.held import HELD, Attacks, attack
+from sim.attack.measured_sigma_max import AttackAt
+from sim.attack.random import RandomDriver
+from sim.attack.rigid_search import clear_poses, search_many
 from sim.world.engine import MjModel
 from sim.world.held_hand import held_model
 from sim.world.scene import Scene

@@ -20,8 +20,8 @@ from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case
 from icage.planner import plan
-from sim.attack import Attacks
-from sim.measure import AttackAt, Measured, measure
+from sim.attack.held import Attacks
+from sim.attack.measured_sigma_max import AttackAt, Measured, measure
 
 THINNEST: Final = 20.0
 """[penetration] A cage with less room above sigma_0 than this is no case for physics."""

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from experiments.escape import Assault, Escape
 from experiments.intervals import rate_upper
-from sim.attack import Attacks
-from sim.measure import Measured
+from sim.attack.held import Attacks
+from sim.attack.measured_sigma_max import Measured
 
 FORMAT: Final = "icage-escape/1"
 

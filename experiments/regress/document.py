@@ -11,7 +11,7 @@ from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
 from icage.cage import Cage
-from sim.attack import Attacks
+from sim.attack.held import Attacks
 
 
 def row_document(row: Row) -> dict[str, Any]:

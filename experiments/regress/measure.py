@@ -20,12 +20,12 @@ from icage.contact_space.method import ContactSpace
 from icage.formats.case_json import Case, read_case
 from icage.method import Engine
 from icage.planner import plan
-from sim.attack import Attacks
+from sim.attack.held import Attacks
+from sim.attack.random import RandomPull
 from sim.closing.batch import close_many
 from sim.closing.judge import Tolerances
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import SETTLED, TIMED_OUT
-from sim.random_attack import RandomPull
 from sim.world.scene import Scene
 
 SEED: Final = 0

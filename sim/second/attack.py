@@ -6,8 +6,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.attack import DIVERGED, RUNNING, Attacks, Lookout
-from sim.random_attack import RandomDriver, RandomPull
+from sim.attack.held import DIVERGED, RUNNING, Attacks, Lookout
+from sim.attack.random import RandomDriver, RandomPull
 from sim.second.world import SecondConfig, World
 from sim.world.scene import Scene
 
@@ -23,7 +23,7 @@ def random_attack_second(
     """Pull at the object from positions ``starts`` (N, 6), the hand held at ``openings`` (N,).
 
     Openings are in [diameter]: the hand may close, but never open wider. Given the same ``rng`` the
-    wrenches are those of ``sim.attack.attack`` with a ``RandomDriver``; the motor answers to where
+    wrenches are those of ``sim.attack.held.attack`` with a ``RandomDriver``; the motor answers to where
     the hand is.
 
     Raises

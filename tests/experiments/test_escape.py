@@ -14,9 +14,9 @@ from experiments.disc_case import PhysicalCase, physical_case
 from experiments.escape import Assault, Escape, at, judged
 from icage.formats.case_json import read_case
 from models import CASES
-from sim.attack import ESCAPED, HELD, Attacks, attack
-from sim.guided_attack import GuidedDriver, GuidedPull
-from sim.measure import Measured
+from sim.attack.guided import GuidedDriver, GuidedPull
+from sim.attack.held import ESCAPED, HELD, Attacks, attack
+from sim.attack.measured_sigma_max import Measured
 from tests.cli.runner import here
 from tests.experiments.small import cage_of, t_case, write_case
 

@@ -10,11 +10,11 @@ import pytest
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.planner import plan
-from sim.attack import DIVERGED, ESCAPED, HELD, Attacks, attack
-from sim.guided_attack import GuidedDriver, GuidedPull, object_path
-from sim.measure import measure
-from sim.random_attack import RandomDriver, RandomPull
-from sim.rigid_search import CLEAR, clear_poses, search_many, search_tree
+from sim.attack.guided import GuidedDriver, GuidedPull, object_path
+from sim.attack.held import DIVERGED, ESCAPED, HELD, Attacks, attack
+from sim.attack.measured_sigma_max import measure
+from sim.attack.random import RandomDriver, RandomPull
+from sim.attack.rigid_search import CLEAR, clear_poses, search_many, search_tree
 from sim.world.hand_in_object import hull_of, separated
 from sim.world.held_hand import held_batch, held_model
 from sim.world.scene import Scene

@@ -16,13 +16,13 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
 from icage.sampling import draw_starts
-from sim.attack import DIVERGED, ESCAPED, HELD
+from sim.attack.guided import object_path
+from sim.attack.held import DIVERGED, ESCAPED, HELD
+from sim.attack.random import RandomPull
 from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import ENDINGS
-from sim.guided_attack import object_path
-from sim.random_attack import RandomPull
 from sim.second import engine
 from sim.second.attack import random_attack_second
 from sim.second.closing import close_many_second

@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray
-from sim.attack import ESCAPED, HELD, Attacks
+from sim.attack.held import ESCAPED, HELD, Attacks
 from sim.world.hand_in_object import depths, hull_of, separated, turn_back
 from sim.world.scene import Scene
 

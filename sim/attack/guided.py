@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.random_attack import PUSH, opening_force
+from sim.attack.random import PUSH, opening_force
 from sim.world.scene import Scene
 
 FINE = 2e-3

@@ -10,7 +10,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.attack import ESCAPED, Attacks
+from sim.attack.held import ESCAPED, Attacks
 
 AttackAt = Callable[[FloatArray, np.random.Generator], Attacks]
 """Runs one attack per opening (N,) [diameter]."""

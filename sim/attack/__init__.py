@@ -1,0 +1,1 @@
+"""The hand is held at an opening and the object attacked: is it caged?"""
