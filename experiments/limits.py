@@ -20,7 +20,7 @@ from experiments.inputs import find_case
 from icage.geometry.contact_types import supports
 from icage.sampling import StartSet, draw_starts
 from sim.closing.quasi_static import CHANGES, compare
-from sim.friction import friction_table
+from sim.grip.friction import friction_table
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 

@@ -24,9 +24,9 @@ from icage.sampling import SamplingError, draw_starts
 from sim.closing.batch import close_many
 from sim.closing.judge import OUTCOMES, Verdicts, judge
 from sim.closing.outcome import ClosingOutcomes
-from sim.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix
-from sim.play import Play, measure_play, opened
-from sim.shake import Shake, shake
+from sim.grip.form_closure import FormClosure, Touches, form_closure, touches, wrench_matrix
+from sim.grip.play import Play, measure_play, opened
+from sim.grip.shake import Shake, shake
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
@@ -82,7 +82,7 @@ class Shaken:
 
     @property
     def held(self) -> bool:
-        """Closed into the target and held in the shake (``sim.shake``)."""
+        """Closed into the target and held in the shake (``sim.grip.shake``)."""
         return self.outcome == "target" and self.shake is not None and self.shake.held
 
     @property

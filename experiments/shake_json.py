@@ -9,9 +9,9 @@ from typing import Any
 
 from experiments.shake import PLAY_TOLERANCE, Shaken
 from experiments.versions import versions
-from sim.form_closure import CARRYING
-from sim.play import Play
-from sim.shake import HELD_SHIFT, HELD_TURN, PUSH
+from sim.grip.form_closure import CARRYING
+from sim.grip.play import Play
+from sim.grip.shake import HELD_SHIFT, HELD_TURN, PUSH
 
 
 def shake_document(done: Shaken) -> dict[str, Any]:

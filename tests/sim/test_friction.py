@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from icage.errors import InputError
-from sim.friction import SLACK, friction_row, friction_table
+from sim.grip.friction import SLACK, friction_row, friction_table
 from sim.world.config import SimConfig
 from tests.sim.grasps import l_shape, starts_near, triangle
 from tests.sim.test_shake import skew

@@ -11,9 +11,9 @@ import pytest
 from icage.geometry.contact_types import supports
 from icage.outline import Outline
 from sim.closing.one import close
-from sim.form_closure import form_closure, touches, wrench_matrix
-from sim.play import clearance, measure_play, opened, predicted_play
-from sim.shake import HELD_SHIFT, PUSH, PUSH_TIME, SHAKES, pushes, random_wrenches, shake
+from sim.grip.form_closure import form_closure, touches, wrench_matrix
+from sim.grip.play import clearance, measure_play, opened, predicted_play
+from sim.grip.shake import HELD_SHIFT, PUSH, PUSH_TIME, SHAKES, pushes, random_wrenches, shake
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
 
 GRASPS = {"triangle": triangle, "L": l_shape, "T": t_shape}

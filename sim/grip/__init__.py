@@ -1,0 +1,1 @@
+"""The closed hand: contact forces, form closure, play, shaking, friction."""
