@@ -22,8 +22,8 @@ from experiments.drawing.shapes import tidied
 from experiments.mp4 import write_mp4
 from experiments.replay import Replay, Report, Run
 from icage.cells.regions import FingerRegion
-from sim.camera import RenderingUnavailable, find_backend, render_frames
-from sim.stage import Decor, View
+from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
+from sim.camera.stage import Decor, View
 
 SIZE: Final = (WIDTH, HEIGHT)
 

@@ -28,7 +28,7 @@ from experiments.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
 from icage.cells.regions import FingerRegion
 from icage.hand import Placement
-from sim.stage import View
+from sim.camera.stage import View
 from sim.world.scene import Scene
 
 _RAIL = 1.5

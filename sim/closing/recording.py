@@ -29,7 +29,7 @@ class Recording:
     time:
         (F,), [s] of the normalized world.
     qpos:
-        (F, 6), engine positions, for ``sim.camera``.
+        (F, 6), engine positions, for ``sim.camera.renderer``.
     placements:
         (F, 4) = x, y, theta, sigma: the hand in the object's frame and unit.
     finger_forces:

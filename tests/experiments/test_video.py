@@ -24,7 +24,7 @@ from experiments.replay import Recorded, Replay, replay
 from experiments.replay_files import VIDEO, regions_by_grasp
 from experiments.video import SIZE, film
 from experiments.words import END_WORDS
-from sim.camera import find_backend
+from sim.camera.renderer import find_backend
 from sim.closing.judge import OUTCOMES
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case

@@ -12,10 +12,10 @@ import shapely
 
 from icage.errors import InputError
 from icage.hand import Placement
-from sim.camera import BACKENDS, RenderingUnavailable, find_backend, render_frames
+from sim.camera.renderer import BACKENDS, RenderingUnavailable, find_backend, render_frames
+from sim.camera.stage import Decor, View, dressed
 from sim.closing.one import close
 from sim.closing.recording import record
-from sim.stage import Decor, View, dressed
 from sim.world.config import SimConfig
 from sim.world.hand_model import FINGER_COLOURS
 from sim.world.object_model import OBJECT_COLOUR
@@ -92,7 +92,7 @@ def test_staged_scene_only_adds_looks() -> None:
 
 def test_importing_the_simulation_leaves_the_graphics_alone() -> None:
     code = (
-        "import os, sim.camera, sim.closing.batch, sim.closing.recording; "
+        "import os, sim.camera.renderer, sim.closing.batch, sim.closing.recording; "
         "assert 'MUJOCO_GL' not in os.environ; print('ok')"
     )
     environment = {k: v for k, v in os.environ.items() if k != "MUJOCO_GL"}

@@ -1,4 +1,4 @@
-"""Draws frames in a process of its own: ``python camera_process.py MODEL POSITIONS WIDTH HEIGHT``.
+"""Draws frames in a process of its own: ``python process.py MODEL POSITIONS WIDTH HEIGHT``.
 
 MuJoCo chooses its OpenGL platform when it is imported, and dies there if the library is missing.
 So whoever wants frames starts this file with ``MUJOCO_GL`` set, and reads raw RGB from its standard

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from icage.arrays import FloatArray
 from icage.errors import IcageError
-from sim.stage import Decor, View, dressed
+from sim.camera.stage import Decor, View, dressed
 from sim.world.engine import mj
 from sim.world.scene import Scene
 
@@ -30,7 +30,7 @@ INSTALL_HINT: Final = "apt-get install libegl1 libgl1 libgl1-mesa-dri"
 """One line for a Debian or Ubuntu machine without a display."""
 
 _PROBE_SECONDS: Final = 60.0
-_WORKER: Final = Path(__file__).with_name("camera_process.py")
+_WORKER: Final = Path(__file__).with_name("process.py")
 _PROBE_MODEL: Final = """<mujoco><worldbody><camera name="top" pos="0 0 1"/>
 <geom name="ball" size="0.1"/></worldbody></mujoco>"""
 
