@@ -17,10 +17,10 @@ from icage.planner import plan
 from icage.sampling import draw_starts
 from sim.attack.held import attack
 from sim.attack.random import RandomDriver, RandomPull
+from sim.chipmunk.attack import random_attack_second
+from sim.chipmunk.closing import close_many_second
 from sim.closing.batch import close_many
 from sim.closing.judge import judge
-from sim.second.attack import random_attack_second
-from sim.second.closing import close_many_second
 from sim.world.held_hand import held_model
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
 from tests.sim.test_second import on_the_way_out

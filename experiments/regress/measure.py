@@ -156,8 +156,8 @@ def _closed(
 
 def _second(row: Row, count: int, seed: int) -> Second:
     """The same sets and attacks, fewer of them: this engine has no batch."""
-    from sim.second.attack import random_attack_second  # optional, and slow to load
-    from sim.second.closing import close_many_second
+    from sim.chipmunk.attack import random_attack_second  # optional, and slow to load
+    from sim.chipmunk.closing import close_many_second
 
     def close(scene: Scene, starts: FloatArray) -> ClosingOutcomes:
         brief = replace(scene.config, max_time=SECOND_TIME)

@@ -19,14 +19,14 @@ from icage.sampling import draw_starts
 from sim.attack.guided import object_path
 from sim.attack.held import DIVERGED, ESCAPED, HELD
 from sim.attack.random import RandomPull
+from sim.chipmunk import engine
+from sim.chipmunk.attack import random_attack_second
+from sim.chipmunk.closing import close_many_second
+from sim.chipmunk.world import World
 from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import ENDINGS
-from sim.second import engine
-from sim.second.attack import random_attack_second
-from sim.second.closing import close_many_second
-from sim.second.world import World
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape

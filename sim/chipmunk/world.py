@@ -31,8 +31,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
+from sim.chipmunk.engine import Body, Space, chipmunk
 from sim.closing.step_check import TOUCHING
-from sim.second.engine import Body, Space, chipmunk
 from sim.world.scene import Scene
 
 ARM: Final = 1e7

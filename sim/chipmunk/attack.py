@@ -8,7 +8,7 @@ from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.attack.held import DIVERGED, RUNNING, Attacks, Lookout
 from sim.attack.random import RandomDriver, RandomPull
-from sim.second.world import SecondConfig, World
+from sim.chipmunk.world import SecondConfig, World
 from sim.world.scene import Scene
 
 

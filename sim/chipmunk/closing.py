@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
+from sim.chipmunk.world import SecondConfig, World
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import DIVERGED, Watch
-from sim.second.world import SecondConfig, World
 from sim.world.scene import Scene
 
 

@@ -1,0 +1,1 @@
+"""A second opinion: closings and random attacks in another physics engine (Chipmunk2D, by pymunk)."""
