@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.disc_case import PhysicalCase
+from experiments.cases.with_discs import PhysicalCase
 from icage.arrays import FloatArray
 from sim.attack.guided import GuidedDriver, object_path
 from sim.attack.held import HELD, Attacks, attack

@@ -15,7 +15,7 @@ from typing import Final, Literal
 import numpy as np
 
 from experiments.arena import Arena
-from experiments.disc_case import PhysicalCase, physical_case
+from experiments.cases.with_discs import PhysicalCase, physical_case
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case

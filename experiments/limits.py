@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from experiments.disc_case import physical_case
-from experiments.inputs import find_case
+from experiments.cases.named import find_case
+from experiments.cases.with_discs import physical_case
 from icage.geometry.contact_types import supports
 from icage.sampling import StartSet, draw_starts
 from sim.closing.quasi_static import CHANGES, compare

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from experiments.disc_case import PhysicalCase
+from experiments.cases.with_discs import PhysicalCase
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.membership import TARGET, query

@@ -34,7 +34,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Attack, write, print the table; 1 if anything did not hold."""
-    from experiments.inputs import find_case
+    from experiments.cases.named import find_case
 
     case = find_case(args.case)
     check_output("--json", args.json, *case.sources)

@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     """Search once, then draw what was asked for."""
     from pathlib import Path
 
-    from experiments.inputs import case_file
+    from experiments.cases.named import case_file
     from experiments.options import check_folder
     from experiments.paper import FIGURES
     from icage.formats.case_json import read_case

@@ -71,7 +71,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Search, plan the winners, list them."""
-    from experiments.inputs import find_object
+    from experiments.cases.named import find_object
     from icage.errors import InputError
     from icage.formats.json_out import write_json
 

@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     """Plan, then write what was asked for."""
     from pathlib import Path
 
-    from experiments.inputs import case_file
+    from experiments.cases.named import case_file
     from icage.errors import InputError
     from icage.formats.case_json import read_case
     from icage.formats.json_out import json_text, write_json
@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--json and --figure both name {args.json!r}")
     if args.no_tunnels and args.method != "contact-space":
         raise InputError("--no-tunnels goes with --method contact-space only")
-    from experiments.methods import planned
+    from experiments.cases.by_methods import planned
 
     answer = planned(case, args.method, tunnels=not args.no_tunnels)
     for line in answer.disagreements:

@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.inputs import case_file
+    from experiments.cases.named import case_file
     from icage.errors import InputError
     from icage.formats.case_json import read_case
     from icage.formats.json_out import write_json

@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.inputs import case_file
+    from experiments.cases.named import case_file
     from experiments.options import check_folder
     from icage.formats.case_json import read_case
     from models import case_paths, object_names

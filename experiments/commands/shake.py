@@ -29,13 +29,15 @@ def run(args: argparse.Namespace) -> int:
     """Close, lock, push, measure; 1 if anything did not hold."""
     import sys
 
-    from experiments.inputs import find_case
+    from experiments.cases.named import find_case
     from icage.formats.json_out import write_json
 
     case = find_case(args.case)
     check_output("--json", args.json, *case.sources)
 
-    from experiments.disc_case import physical_case  # only now: the planner takes time to load
+    from experiments.cases.with_discs import (
+        physical_case,  # only now: the planner takes time to load
+    )
     from experiments.shake import ShakeError, shake_case
     from experiments.shake_json import shake_document, shake_summary
 

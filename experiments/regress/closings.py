@@ -14,7 +14,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from experiments.disc_case import PhysicalCase
+from experiments.cases.with_discs import PhysicalCase
 from experiments.replay import Run
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from experiments.disc_case import DerivedCaseError, PhysicalCase, physical_case
+from experiments.cases.with_discs import DerivedCaseError, PhysicalCase, physical_case
 from experiments.escape import Escape, at, attacked
 from experiments.regress.cases import Effort, Entry
 from experiments.regress.closings import SETS, Close, Closed, close_set

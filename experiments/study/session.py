@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from experiments.disc_case import physical_case
-from experiments.inputs import case_file
+from experiments.cases.named import case_file
+from experiments.cases.with_discs import physical_case
 from experiments.options import check_folder
 from experiments.progress import stage_bar
 from experiments.study.announced import announcement, warning

@@ -46,7 +46,7 @@ def test_both_say_that_they_agree(capsys: Any) -> None:
 def test_a_disagreement_is_exit_1_with_both_numbers(
     capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from experiments import methods
+    from experiments.cases import by_methods as methods
 
     true_plan = methods.plan
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from experiments.arena import Arena
-from experiments.disc_case import PhysicalCase, physical_case
+from experiments.cases.with_discs import PhysicalCase, physical_case
 from experiments.escape import Assault, Escape, at, judged
 from icage.formats.case_json import read_case
 from models import CASES

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 import shapely
 
-from experiments.disc_case import HandAndObject, PhysicalCase, physical_case
+from experiments.cases.named import find_case
+from experiments.cases.with_discs import HandAndObject, PhysicalCase, physical_case
 from experiments.escape import attacked
-from experiments.inputs import find_case
 from experiments.regress.baseline import differences
 from experiments.regress.cases import EFFORTS, Effort, shipped
 from experiments.regress.checks import checks

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from experiments import shake as shakes
-from experiments.disc_case import DerivedCaseError, physical_case, with_discs
+from experiments.cases.with_discs import DerivedCaseError, physical_case, with_discs
 from icage.formats.case_json import read_case
 from icage.hand import HandShape
 from models import CASES

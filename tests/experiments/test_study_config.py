@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from experiments.cases.with_discs import PhysicalCase, physical_case
 from experiments.cli import parser
 from experiments.commands.study import _given
-from experiments.disc_case import PhysicalCase, physical_case
 from experiments.study.command import command_line
 from experiments.study.config import FIELDS, ConfigError, StudyConfig, read_toml, study_config
 from experiments.study.distributions import Distribution, DistributionError, parse_distribution
