@@ -11,7 +11,7 @@ from experiments.options import count, file_name, seed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from experiments.replay import Replay
+    from experiments.replay.run import Replay
 
 
 def add_parser(subparsers: Any) -> None:
@@ -59,8 +59,8 @@ def run(args: argparse.Namespace) -> int:
     cases = [read_case(path) for path in paths]
 
     from experiments.progress import stage_bar
-    from experiments.replay import replay  # only now: engine and planner take a second to load
-    from experiments.replay_files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
+    from experiments.replay.files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
+    from experiments.replay.run import replay  # only now: engine and planner take a second to load
     from icage.sampling import SamplingError
 
     check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
             regions = regions_by_grasp(done, report)
             write_results(done, name, regions, staging)
             if args.video:
-                from experiments.video import film
+                from experiments.replay.video import film
 
                 film(done, name, regions, staging / VIDEO, report)
     except SamplingError as error:
@@ -135,7 +135,7 @@ def _row(run: Any) -> tuple[str, ...]:
 
 def _searches(done: Replay) -> Iterator[str]:
     """One line a grasp, as the paper reports its own search. [Bunis2018, Sec. VII-B]"""
-    from experiments.replay import escape_puncture
+    from experiments.replay.run import escape_puncture
     from icage.agreement import disagreements
 
     for run in done.runs:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from experiments.options import add_json, check_output, file_name, row_index
 
 if TYPE_CHECKING:
-    from experiments.recorded import Rerun
+    from experiments.replay.recorded import Rerun
 
 
 def add_parser(subparsers: Any) -> None:
@@ -59,11 +59,14 @@ def run(args: argparse.Namespace) -> int:
             replayed.film_rerun(again, Path(args.video))
         return _told(args, again, replayed_words.document(again), replayed_words.summary(again))
 
-    from experiments.recorded import read_trial, rerun  # only now: they take a second to load
+    from experiments.replay.recorded import (  # only now: they take a second to load
+        read_trial,
+        rerun,
+    )
 
     done = rerun(read_trial(folder, args.index))
     if args.video is not None:
-        from experiments.trial_film import film_trial
+        from experiments.replay.trial_film import film_trial
 
         film_trial(done, Path(args.video))
     return _told(args, done, document(done), summary(done))

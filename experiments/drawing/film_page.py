@@ -18,8 +18,8 @@ from icage.cage import Cage
 from icage.cells.regions import FingerRegion
 
 if TYPE_CHECKING:
-    from experiments.clips import Clip
-    from experiments.replay import Run
+    from experiments.replay.clips import Clip
+    from experiments.replay.run import Run
 
 WIDTH, HEIGHT = 1280, 720
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
-from experiments.replay import DEEPEST_MOVING
+from experiments.replay.run import DEEPEST_MOVING
 
 SECOND_DEEPEST: Final = 1e-2
 """[diameter] The second engine lets wedged fingers sink in; deeper than this says nothing."""

@@ -15,7 +15,7 @@ from typing import Final, Literal
 import numpy as np
 
 from experiments.cases.with_discs import PhysicalCase
-from experiments.replay import Run
+from experiments.replay.run import Run
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage
 from icage.cells.membership import ESCAPES, OTHER, Answers, query

@@ -12,8 +12,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.regress.measure import Row
-from experiments.replay import Replay, run_document
-from experiments.replay_files import JSON, TRIALS, trial_table, whole_folder
+from experiments.replay.files import JSON, TRIALS, trial_table, whole_folder
+from experiments.replay.run import Replay, run_document
 from experiments.versions import versions
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document

@@ -13,8 +13,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.progress import stage_bar
-from experiments.recorded import RecordingError
-from experiments.replay import Recorded, Replay, Run
+from experiments.replay.recorded import RecordingError
+from experiments.replay.run import Recorded, Replay, Run
 from experiments.study.document import study_of
 from experiments.study.folder import SHARDS, TRIALS, read_document
 from experiments.study.rows import table_of
@@ -85,7 +85,7 @@ def _row(folder: Path, index: int) -> dict[str, Any]:
 
 
 def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None:
-    """Film the trial, free travel included; ``camera`` as in ``experiments.video.film``.
+    """Film the trial, free travel included; ``camera`` as in ``experiments.replay.video.film``.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
         The trial was never closed.
     """
     from experiments.figures import figure_regions
-    from experiments.video import film
+    from experiments.replay.video import film
 
     study, ran = done.study, done.ran
     if not len(ran.done):

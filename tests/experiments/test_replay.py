@@ -11,9 +11,9 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from experiments import replay as replays
-from experiments.replay import Replay, replay, run_failures
-from experiments.replay_files import JSON, REGIONS, TRIALS, trial_table
+from experiments.replay import run as replays
+from experiments.replay.files import JSON, REGIONS, TRIALS, trial_table
+from experiments.replay.run import Replay, replay, run_failures
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from icage.hand import Placement

@@ -11,8 +11,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from experiments import clips, video
-from experiments.recorded import RecordingError, read_trial, rerun
+from experiments.replay import clips, video
+from experiments.replay.recorded import RecordingError, read_trial, rerun
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
 

@@ -15,14 +15,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from experiments import clips, video
 from experiments.drawing import film_page
 from experiments.drawing.canvas import Canvas
 from experiments.drawing.film_page import MAIN
 from experiments.drawing.plots import Level, Plot
-from experiments.replay import Recorded, Replay, replay
-from experiments.replay_files import VIDEO, regions_by_grasp
-from experiments.video import SIZE, film
+from experiments.replay import clips, video
+from experiments.replay.files import VIDEO, regions_by_grasp
+from experiments.replay.run import Recorded, Replay, replay
+from experiments.replay.video import SIZE, film
 from experiments.words import END_WORDS
 from sim.camera.renderer import find_backend
 from sim.closing.judge import OUTCOMES
@@ -174,7 +174,7 @@ def test_a_curve_meets_its_levels_and_grows():
 @pytest.mark.slow
 def test_importing_leaves_the_choice_of_opengl_alone():
     code = (
-        "import os, experiments.video, experiments.commands.replay; "
+        "import os, experiments.replay.video, experiments.commands.replay; "
         "raise SystemExit('MUJOCO_GL' in os.environ)"
     )
     environment = {key: value for key, value in os.environ.items() if key != "MUJOCO_GL"}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.replay_files import ALL, JSON, VIDEO, whole_folder
+from experiments.replay.files import ALL, JSON, VIDEO, whole_folder
 from icage.errors import OutputError
 from icage.formats.whole_files import check_writable, whole_file
 

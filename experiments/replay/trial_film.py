@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiments.progress import stage_bar
-from experiments.recorded import Rerun, recorded_cage, recorded_regions
-from experiments.replay import Recorded, Replay, Run
-from experiments.video import film
+from experiments.replay.recorded import Rerun, recorded_cage, recorded_regions
+from experiments.replay.run import Recorded, Replay, Run
+from experiments.replay.video import film
 from icage.formats.case_json import Case
 from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
 
 
 def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:
-    """Write the film; ``camera`` as in ``experiments.video.film``.
+    """Write the film; ``camera`` as in ``experiments.replay.video.film``.
 
     Unlike the closing that is compared, the film also simulates the free travel before the first
     touch: its last frame may differ from the record by rounding, about 1e-9 of the diameter.

@@ -14,13 +14,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.clips import FPS, Clip, clips
 from experiments.drawing.canvas import Canvas, Pixels
 from experiments.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
 from experiments.drawing.hand_view import HandView, window_on
 from experiments.drawing.shapes import tidied
-from experiments.mp4 import write_mp4
-from experiments.replay import Replay, Report, Run
+from experiments.replay.clips import FPS, Clip, clips
+from experiments.replay.mp4 import write_mp4
+from experiments.replay.run import Replay, Report, Run
 from icage.cells.regions import FingerRegion
 from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
 from sim.camera.stage import Decor, View

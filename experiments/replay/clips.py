@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from experiments.replay import Replay, Run
+from experiments.replay.run import Replay, Run
 from icage.arrays import FloatArray
 from icage.hand import Placement
 from sim.closing.judge import OUTCOMES

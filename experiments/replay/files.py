@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.figures import draw_plan, figure_regions
-from experiments.replay import Replay, Report, Run, run_document
+from experiments.replay.run import Replay, Report, Run, run_document
 from experiments.versions import versions
 from icage.cells.membership import VERDICTS, query
 from icage.cells.regions import FingerRegion
