@@ -38,8 +38,8 @@ def run(args: argparse.Namespace) -> int:
 
     case = find_case(args.case)
     check_output("--json", args.json, *case.sources)
-    from experiments.escape import escape  # only now: engine and planner take a second to load
-    from experiments.escape_json import escape_document, escape_table
+    from experiments.escape.document import escape_document, escape_table
+    from experiments.escape.run import escape  # only now: engine and planner take a second to load
     from experiments.progress import stage_bar
     from icage.formats.json_out import write_json
 

@@ -38,8 +38,8 @@ def run(args: argparse.Namespace) -> int:
     from experiments.cases.with_discs import (
         physical_case,  # only now: the planner takes time to load
     )
-    from experiments.shake import ShakeError, shake_case
-    from experiments.shake_json import shake_document, shake_summary
+    from experiments.shake.document import shake_document, shake_summary
+    from experiments.shake.run import ShakeError, shake_case
 
     try:
         done = shake_case(physical_case(case), args.seed)

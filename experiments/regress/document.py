@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from experiments.escape import Assault
+from experiments.escape.run import Assault
 from experiments.intervals import rate_upper
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed

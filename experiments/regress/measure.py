@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from experiments.cases.with_discs import DerivedCaseError, PhysicalCase, physical_case
-from experiments.escape import Escape, at, attacked
+from experiments.escape.run import Escape, at, attacked
 from experiments.regress.cases import Effort, Entry
 from experiments.regress.closings import SETS, Close, Closed, close_set
-from experiments.shake import ShakeError, Shaken, shake_case
+from experiments.shake.run import ShakeError, Shaken, shake_case
 from icage.agreement import disagreements
 from icage.arrays import FloatArray
 from icage.cage import Cage

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.arena import Arena
 from experiments.cases.with_discs import PhysicalCase, physical_case
-from experiments.escape import Assault, Escape, at, judged
+from experiments.escape.run import Assault, Escape, at, judged
+from experiments.escape.setup import Arena
 from icage.formats.case_json import read_case
 from models import CASES
 from sim.attack.guided import GuidedDriver, GuidedPull

@@ -15,7 +15,7 @@ import shapely
 
 from experiments.cases.named import find_case
 from experiments.cases.with_discs import HandAndObject, PhysicalCase, physical_case
-from experiments.escape import attacked
+from experiments.escape.run import attacked
 from experiments.regress.baseline import differences
 from experiments.regress.cases import EFFORTS, Effort, shipped
 from experiments.regress.checks import checks

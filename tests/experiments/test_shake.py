@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments import shake as shakes
 from experiments.cases.with_discs import DerivedCaseError, physical_case, with_discs
+from experiments.shake import run as shakes
 from icage.formats.case_json import read_case
 from icage.hand import HandShape
 from models import CASES

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from experiments.shake import PLAY_TOLERANCE, Shaken
+from experiments.shake.run import PLAY_TOLERANCE, Shaken
 from experiments.versions import versions
 from sim.grip.form_closure import CARRYING
 from sim.grip.play import Play

@@ -14,8 +14,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from experiments.arena import Arena
 from experiments.cases.with_discs import PhysicalCase, physical_case
+from experiments.escape.setup import Arena
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.case_json import Case

@@ -1,0 +1,1 @@
+"""``icage shake``: after closing, is the object held?"""
