@@ -23,9 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from experiments.study.run import SHARD, on_threads, run_study
-from experiments.study.session import Session, session_of
-from experiments.study.shard import run_trials
+from experiments.study.run.session import Session, session_of
+from experiments.study.run.shard import run_trials
+from experiments.study.run.shards import SHARD, on_threads, run_study
 from sim.closing.approach import approached
 from sim.closing.varied_shapes import LOOK_EVERY
 from sim.world.engine import Batch

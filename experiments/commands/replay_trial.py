@@ -52,7 +52,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--json and --video both name {args.json!r}")
 
     if (folder / "study.json").is_file():
-        from experiments.study import replayed, replayed_words
+        from experiments.study.report import replayed_trial as replayed_words
+        from experiments.study.run import replayed
 
         again = replayed.rerun_trial(folder, args.index)
         if args.video is not None:

@@ -6,10 +6,10 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from experiments.options import count, file_name, number, positive, seed
-from experiments.study.fields import HELP
+from experiments.study.inputs.fields import HELP
 
 if TYPE_CHECKING:
-    from experiments.study.session import Session
+    from experiments.study.run.session import Session
 
 _WORDS = ("starts", "sampling", "uncaged")
 _POSITIVE = ("until_half_width", "position_tolerance", "angle_tolerance", "max_time", "time_step")
@@ -80,12 +80,12 @@ def _four(text: str) -> tuple[float, ...]:
 def run(args: argparse.Namespace) -> int:
     """Check everything, run what is missing, sum up."""
     if args.variables:
-        from experiments.study.variables import listing
+        from experiments.study.inputs.variables import listing
 
         print("\n".join(listing()))
         return 0
 
-    from experiments.study.session import run_session, session_of
+    from experiments.study.run.session import run_session, session_of
 
     session: Session = session_of(_given(args), args.out, args.resume, args.shard)
     lines = run_session(session, args.threads, args.scheduler, args.figures)
@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _given(args: argparse.Namespace) -> dict[str, Any]:
     """The fields that the command line names."""
-    from experiments.study.config import ConfigError
+    from experiments.study.inputs.config import ConfigError
 
     given: dict[str, Any] = {}
     names = ("case", "grasp", "trials", "seed", "nominal", *_WORDS, *_POSITIVE)

@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.cli import main
-from experiments.study import run
-from experiments.study.folder import StudyFolder
+from experiments.study.run import shards as run
+from experiments.study.run.folder import StudyFolder
 from tests.cli.runner import Result, here
 from tests.experiments.small import t_case, write_case
 

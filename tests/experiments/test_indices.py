@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm, qmc, sobol_indices
 
 from experiments.intervals import wilson
-from experiments.study.indices import (
+from experiments.study.report.indices import (
     FEWEST,
     RAREST,
     Index,

@@ -20,11 +20,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.kills import survive
-from experiments.study import folder as folders
-from experiments.study.folder import StudyFolder
-from experiments.study.run import Span, run_study
-from experiments.study.session import session_of
-from experiments.study.shard import Study
+from experiments.study.run import folder as folders
+from experiments.study.run.folder import StudyFolder
+from experiments.study.run.session import session_of
+from experiments.study.run.shard import Study
+from experiments.study.run.shards import Span, run_study
 from tests.cli.runner import here
 from tests.experiments.studies import TRIALS, VARIED, Studied, failing, left_alone, t_file
 

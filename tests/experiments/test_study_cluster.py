@@ -17,9 +17,9 @@ from typing import Any
 import pytest
 
 from experiments.environment import ROOT
-from experiments.study import cluster
-from experiments.study.cluster import ClusterError, on_cluster, run_remote
-from experiments.study.folder import StudyFolder
+from experiments.study.run import cluster
+from experiments.study.run.cluster import ClusterError, on_cluster, run_remote
+from experiments.study.run.folder import StudyFolder
 from tests.experiments.studies import Studied, left_alone
 
 distributed = pytest.importorskip("distributed")

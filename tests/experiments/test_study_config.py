@@ -16,12 +16,22 @@ from hypothesis import strategies as st
 from experiments.cases.with_discs import PhysicalCase, physical_case
 from experiments.cli import parser
 from experiments.commands.study import _given
-from experiments.study.command import command_line
-from experiments.study.config import FIELDS, ConfigError, StudyConfig, read_toml, study_config
-from experiments.study.distributions import Distribution, DistributionError, parse_distribution
-from experiments.study.fields import HELP
-from experiments.study.session import session_of
-from experiments.study.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
+from experiments.study.inputs.config import (
+    FIELDS,
+    ConfigError,
+    StudyConfig,
+    read_toml,
+    study_config,
+)
+from experiments.study.inputs.distributions import (
+    Distribution,
+    DistributionError,
+    parse_distribution,
+)
+from experiments.study.inputs.fields import HELP
+from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
+from experiments.study.run.command import command_line
+from experiments.study.run.session import session_of
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from models import CASES
@@ -40,7 +50,7 @@ def planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         same = case.name == "T" and case.finger_radius == CASE.finger_radius
         return PhysicalCase.of(case, cage_of("T")) if same else physical_case(case)
 
-    monkeypatch.setattr("experiments.study.session.physical_case", known)
+    monkeypatch.setattr("experiments.study.run.session.physical_case", known)
 
 
 def config(**table: Any) -> StudyConfig:

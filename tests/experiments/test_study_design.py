@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import kstest
 
-from experiments.study.config import StudyConfig
-from experiments.study.design import Design, base_points, cells, sobol_points
-from experiments.study.distributions import Distribution
-from experiments.study.indices import layout
-from experiments.study.placements import Intended
-from experiments.study.variables import VARIABLES
+from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.design import Design, base_points, cells, sobol_points
+from experiments.study.inputs.distributions import Distribution
+from experiments.study.inputs.placements import Intended
+from experiments.study.inputs.variables import VARIABLES
+from experiments.study.report.indices import layout
 from icage.arrays import FloatArray
 from tests.experiments.small import cage_of
 

@@ -21,19 +21,20 @@ from matplotlib.text import Text
 from experiments.drawing.sheet import Bounds
 from experiments.figures import figure_regions
 from experiments.intervals import wilson
-from experiments.study import figures, indices_figure
-from experiments.study import map as study_map
-from experiments.study.config import StudyConfig
-from experiments.study.design import Design
-from experiments.study.distributions import Distribution
-from experiments.study.figures import draw_indices, draw_map, draw_rates
-from experiments.study.hexagons import bin_hexagons
-from experiments.study.map import CROSSES, Closings, map_page
-from experiments.study.map_layout import placed
-from experiments.study.pictures import WIDE, Page, settings
-from experiments.study.shown import WORDS, merged, percent
-from experiments.study.summary import summary
-from experiments.study.variables import VARIABLES
+from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.design import Design
+from experiments.study.inputs.distributions import Distribution
+from experiments.study.inputs.variables import VARIABLES
+from experiments.study.report import indices_figure
+from experiments.study.report import map as study_map
+from experiments.study.report import rate_figures as figures
+from experiments.study.report.hexagons import bin_hexagons
+from experiments.study.report.map import CROSSES, Closings, map_page
+from experiments.study.report.map_layout import placed
+from experiments.study.report.names import WORDS, merged, percent
+from experiments.study.report.pictures import WIDE, Page, settings
+from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
+from experiments.study.report.summary import summary
 from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import Placement

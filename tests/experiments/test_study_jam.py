@@ -10,8 +10,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from experiments.study.jam import draw_jam, presses
-from experiments.study.replayed import rerun_trial
+from experiments.study.report.jam import draw_jam, presses
+from experiments.study.run.replayed import rerun_trial
 from icage.errors import InputError
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case

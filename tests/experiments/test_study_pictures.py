@@ -10,9 +10,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.figures import figure_regions
-from experiments.study.document import study_of
-from experiments.study.figures import draw_indices, draw_map, draw_rates
-from experiments.study.results_md import results_page
+from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
+from experiments.study.report.results_md import results_page
+from experiments.study.run.document import study_of
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
 

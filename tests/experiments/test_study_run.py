@@ -12,8 +12,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.intervals import stopped_at
-from experiments.study import run
-from experiments.study.folder import StudyFolder
+from experiments.study.run import shards as run
+from experiments.study.run.folder import StudyFolder
 from tests.cli.runner import here
 from tests.experiments.small import t_case, write_case
 from tests.experiments.studies import TRIALS, Studied, left_alone, no_trials, t_file

@@ -10,12 +10,12 @@ import pyarrow as pa
 import pytest
 
 from experiments.intervals import wilson
-from experiments.study.config import StudyConfig
-from experiments.study.design import Design
-from experiments.study.distributions import Distribution
-from experiments.study.results_md import results_page
-from experiments.study.shown import merged
-from experiments.study.summary import sentence, summary
+from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.design import Design
+from experiments.study.inputs.distributions import Distribution
+from experiments.study.report.names import merged
+from experiments.study.report.results_md import results_page
+from experiments.study.report.summary import sentence, summary
 
 FRICTION = Distribution("uniform", (0.0, 0.8))
 RADIUS = Distribution("grid", (-0.01, 0.0, 0.01))

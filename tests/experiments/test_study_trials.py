@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.study.config import study_config
-from experiments.study.distributions import Distribution
-from experiments.study.document import study_document, study_of
-from experiments.study.placements import BLOCK, Intended, moved
-from experiments.study.rows import table_of
-from experiments.study.shard import (
+from experiments.study.inputs.config import study_config
+from experiments.study.inputs.distributions import Distribution
+from experiments.study.inputs.placements import BLOCK, Intended, moved
+from experiments.study.inputs.variables import VARIABLES
+from experiments.study.inputs.variants import boundary_noise
+from experiments.study.run.document import study_document, study_of
+from experiments.study.run.rows import table_of
+from experiments.study.run.shard import (
     STUDY_OUTCOMES,
     Ran,
     Study,
@@ -24,8 +26,6 @@ from experiments.study.shard import (
     run_trials,
     worlds_of,
 )
-from experiments.study.variables import VARIABLES
-from experiments.study.variants import boundary_noise
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.membership import TARGET, query

@@ -1,0 +1,1 @@
+"""What a study varies: its inputs, their distributions, its description, its design."""

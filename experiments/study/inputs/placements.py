@@ -1,0 +1,120 @@
+"""Where the hand really stands: where it is meant to, and how far off.
+
+The intended placement is the nominal one, or drawn from a set of the cage. Placement errors move
+the hand in the object's frame: its middle by (x, y), a turn about that middle, a change of its
+opening. A sensor's bias is an error of the object's pose: the hand goes where it would be right for
+the object as seen, so it turns about the object's centroid.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from experiments.study.inputs.config import StudyConfig
+from icage.arrays import ComplexArray, FloatArray, IntArray
+from icage.cage import Cage
+from icage.kernels.locate import depth_inside
+from icage.outline import Outline
+from icage.sampling import Box, StartSet, draw_starts
+
+BLOCK: Final = 250
+"""[placement] Drawn together; a start depends on the seed and its number, not on the shard."""
+
+_STREAM, _NOMINAL = 12, 13
+"""Of the random numbers of starts."""
+
+_ROOMY: Final = 1000
+"""Placements of the guaranteed set among which the nominal one is looked for."""
+
+
+class Intended:
+    """Intended placements of a study, by number; safe to ask from several threads."""
+
+    def __init__(self, config: StudyConfig, cage: Cage) -> None:
+        self._config, self._cage = config, cage
+        self._lock = threading.Lock()
+        self._blocks: dict[tuple[int, int], FloatArray] = {}
+        self._box: Box | None = None
+        self.nominal: FloatArray | None = None
+        if config.starts == "nominal":
+            given = config.nominal
+            self.nominal = roomiest(cage, config.seed) if given is None else np.array(given)
+
+    def placements(self, numbers: IntArray, streams: IntArray) -> FloatArray:
+        """Placements (n, 4) with these numbers in these streams.
+
+        Raises
+        ------
+        SamplingError:
+            The set is too small to be drawn from.
+        """
+        if self.nominal is not None:
+            return np.tile(self.nominal, (len(numbers), 1))
+        rows = np.empty((len(numbers), 4))
+        blocks = numbers // BLOCK
+        with self._lock:
+            for stream, block in sorted(set(zip(streams.tolist(), blocks.tolist(), strict=True))):
+                here = np.flatnonzero((streams == stream) & (blocks == block))
+                rows[here] = self._block(stream, block)[numbers[here] % BLOCK]
+        return rows
+
+    def _block(self, stream: int, block: int) -> FloatArray:
+        key = (stream, block)
+        if key not in self._blocks:
+            rng = np.random.default_rng([self._config.seed, _STREAM, stream, block])
+            which: StartSet = "cage" if self._config.starts == "cage" else "guaranteed"
+            if self._box is None:
+                self._box = Box.around(self._cage, which)
+            while len(self._blocks) >= 64:  # shards come in order: the oldest is not asked again
+                del self._blocks[next(iter(self._blocks))]
+            self._blocks[key] = draw_starts(self._cage, which, BLOCK, rng, box=self._box).placements
+        return self._blocks[key]
+
+
+def roomiest(cage: Cage, seed: int) -> FloatArray:
+    """The placement (4,) with the most room among ``_ROOMY`` from the guaranteed set.
+
+    Room is the smaller of the discs' distance from the object and of how much wider the hand may
+    open before it leaves the guaranteed set.
+    """
+    rng = np.random.default_rng([seed, _NOMINAL])
+    rows = draw_starts(cage, "guaranteed", _ROOMY, rng).placements
+    fingers = cage.hand.fingers(rows).reshape(-1, 2)
+    depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
+    first = np.inf if cage.sigma_first is None else cage.sigma_first
+    room = np.minimum(-depth.max(axis=1), first - rows[:, 3])
+    return np.array(rows[int(np.argmax(room))])
+
+
+def moved(
+    intended: FloatArray,
+    values: Mapping[str, FloatArray],
+    cage: Cage,
+    middles: ComplexArray,
+) -> FloatArray:
+    """True placements (n, 4) of the hand in the object's frame. Sigma may come out negative.
+
+    ``values`` are those of the placement variables, ``middles`` those of the true unit hands, (n,)
+    each: a hand of another shape stands with its middle where the planned one's should be.
+    """
+    x, y, theta, sigma = intended.T
+    middle = complex(cage.hand.z.mean())
+    at = x + 1j * y + sigma * np.exp(1j * theta) * middle
+    at = at + values["place_x"] + 1j * values["place_y"]
+    theta = theta + values["place_theta"]
+    sigma = sigma + values["place_sigma"]
+    d = at - sigma * np.exp(1j * theta) * middles
+    turn = np.exp(1j * values["bias_theta"])
+    centre = complex(*cage.outline.centroid.tolist())
+    d = centre + turn * (d - centre) + values["bias_x"] + 1j * values["bias_y"]
+    return np.column_stack([d.real, d.imag, theta + values["bias_theta"], sigma])
+
+
+def collides(outline: Outline, fingers: FloatArray, radius: float, tolerance: float) -> bool:
+    """Whether any disc (3, 2) reaches deeper than ``tolerance`` [diameter] into the outline."""
+    depth = depth_inside(outline.vertices, fingers, radius)
+    return bool(depth.max() > tolerance * outline.diameter)

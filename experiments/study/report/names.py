@@ -1,0 +1,99 @@
+"""What the pictures of a study share: names in words, units, numbers, and few enough bins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from experiments.intervals import wilson
+from experiments.study.inputs.variables import Variable, own_unit
+
+WORDS: Final = {
+    "place_x": "hand off its place, along x",
+    "place_y": "hand off its place, along y",
+    "place_theta": "hand turned",
+    "place_sigma": "hand open wider",
+    "bias_x": "object seen off, along x",
+    "bias_y": "object seen off, along y",
+    "bias_theta": "object seen turned",
+    "friction": "friction of the fingers",
+    "softness": "softness of contacts / usual",
+    "table_friction": "table friction / closing force",
+    "tilt": "tilt of the table",
+    "tilt_direction": "direction of the tilt",
+    "weight": "weight / closing force",
+    "mass": "mass / usual",
+    "inertia": "inertia / even plate",
+    "com_x": "centre of mass off, along x",
+    "com_y": "centre of mass off, along y",
+    "outline_scale": "object's size / planned",
+    "outline_noise": "displaced boundary, RMS",
+    "finger_radius": "error of the finger radius",
+    "phi_1": "error of the angle at finger 1",
+    "phi_2": "error of the angle at finger 2",
+    "linkage_play": "play of the linkage",
+    "speed": "closing speed / usual",
+    "force": "motor force / usual",
+    "placement": "placement of the hand",
+}
+"""Every variable, and the group of Saltelli's design that has the placement in it."""
+
+
+_COUNTS: Final = ("trials", "closed", "target")
+"""Of a bin."""
+
+
+def display(one: Variable, unit: str) -> tuple[float, str]:
+    """Factor from the unit in which a variable is kept to the one it is shown in, and that unit.
+
+    Angles are shown in degrees; a ratio has no unit.
+    """
+    if one.measure == "angle":
+        return 180.0 / math.pi, "°"
+    return 1.0, "" if one.measure == "ratio" else own_unit(one, unit)
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number with a few digits, never "-0".
+
+    >>> number(0.30000000000000004), number(-1e-17 * 0), number(1234567.0)
+    ('0.3', '0', '1.235e+06')
+    """
+    return f"{value + 0.0:.{digits}g}"
+
+
+def percent(rate: float) -> str:
+    """A rate in percent: 0 and 100 only if it is; one decimal, or more near the ends.
+
+    >>> [percent(r) for r in (0.0, 1.0, 0.5, 0.8333, 0.99617, 0.00004, 0.999996)]
+    ['0 %', '100 %', '50.0 %', '83.3 %', '99.62 %', '0.0040 %', '99.99960 %']
+    """
+    if rate in (0.0, 1.0):
+        return f"{100 * rate:g} %"
+    near = min(rate, 1.0 - rate)
+    decimals = max(1, 1 - math.floor(math.log10(100.0 * near * (1.0 + 1e-9))))
+    return f"{100.0 * rate:.{decimals}f} %"
+
+
+def merged(bins: Sequence[Mapping[str, Any]], most: int) -> list[Mapping[str, Any]]:
+    """At most ``most`` bins: neighbours made one where there are more."""
+    if len(bins) <= most:
+        return list(bins)
+    groups: list[list[Mapping[str, Any]]] = [[] for _ in range(most)]
+    for k, one in enumerate(bins):
+        groups[k * most // len(bins)].append(one)
+    return [_one(group) for group in groups]
+
+
+def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    trials, closed, target = (sum(one[key] for one in bins) for key in _COUNTS)
+    return {
+        "low": bins[0]["low"],
+        "high": bins[-1]["high"],
+        "mean": sum(one["mean"] * one["trials"] for one in bins) / trials,
+        "trials": trials,
+        "closed": closed,
+        "target": target,
+        "rate_95": list(wilson(target, closed)) if closed else None,
+    }

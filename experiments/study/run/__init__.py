@@ -1,0 +1,1 @@
+"""Run a study: shards, folders, threads or a cluster, one trial again."""

@@ -1,0 +1,158 @@
+"""``study.json``: a study as it can be run again, by another process or another machine."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.distributions import Distribution
+from experiments.study.run.shard import Study
+from experiments.versions import versions
+from icage.cells.membership import VERDICTS, query
+from icage.errors import InputError
+from icage.formats.case_json import Case
+from icage.outline import Outline
+from icage.planner import plan
+
+FORMAT: Final = "icage-study/1"
+
+_MAY_GROW: Final = ("trials", "until_half_width")
+"""A study may be resumed with other values of these: its trials are the same ones."""
+
+
+def study_document(study: Study) -> dict[str, Any]:
+    """Everything that decides the numbers of a study, JSON-ready."""
+    case = study.case
+    return {
+        "format": FORMAT,
+        "name": case.name,
+        "unit": case.unit,
+        "case": {
+            "outline": {"vertices": case.outline.vertices.tolist()},
+            "finger_radius": case.finger_radius,
+            "contacts": case.contacts.tolist(),
+        },
+        "diameter": case.outline.diameter,
+        "config": study.config.document(),
+        "nominal": _nominal(study),
+        "versions": versions(),
+    }
+
+
+def _nominal(study: Study) -> dict[str, Any] | None:
+    """The placement that is meant and what the planner says of it; None if many are meant."""
+    nominal = study.intended.nominal
+    if nominal is None:
+        return None
+    answers = query(study.cage, nominal[None, :])
+    margin = float(answers.margin[0])
+    return {
+        **dict(zip(("x", "y", "theta", "sigma"), nominal.tolist(), strict=True)),
+        "verdict": VERDICTS[int(answers.verdict[0])],
+        "in_cage": bool(answers.in_cage[0]),
+        "margin": None if math.isnan(margin) else margin,
+    }
+
+
+def study_of(document: Mapping[str, Any], trials: int | None = None) -> Study:
+    """The study of a document, planned afresh; with another number of trials if one is given.
+
+    Raises
+    ------
+    InputError:
+        It is no study's document.
+    """
+    check_format(document)
+    try:
+        given = document["case"]
+        case = Case(
+            document["name"], document["unit"], Outline(given["outline"]["vertices"]),
+            given["finger_radius"], _array(given["contacts"]), (),
+        )  # fmt: skip
+        plain = dict(document["config"])
+        nominal = plain.pop("nominal")
+        if trials is not None:
+            plain["trials"] = trials
+        vary = {
+            name: Distribution(one["kind"], tuple(one["parameters"]))
+            for name, one in plain.pop("vary").items()
+        }
+        config = StudyConfig(
+            vary=vary, nominal=None if nominal is None else tuple(nominal), **plain
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"not a study's document: {error!r}") from error
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    return Study(config, case, cage)
+
+
+def check_format(document: Mapping[str, Any]) -> None:
+    """Refuse what is no study's document.
+
+    Raises
+    ------
+    InputError:
+        It has another format.
+    """
+    if document.get("format") != FORMAT:
+        raise InputError(f"format {document.get('format')!r}; {FORMAT!r} is needed")
+
+
+def _array(rows: Any) -> Any:
+    import numpy as np
+
+    return np.array(rows, dtype=np.float64)
+
+
+def fingerprint(document: Mapping[str, Any]) -> str:
+    """What two shards of one study have in common: config, case and versions, not its length."""
+    config = {k: v for k, v in document["config"].items() if k not in _loose(document)}
+    kept = {key: document[key] for key in ("name", "unit", "case", "versions")}
+    text = json.dumps({**kept, "config": config}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _loose(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Fields that may differ: the case is compared itself, not by its name on the disk.
+
+    Saltelli's design hangs on the number of trials.
+    """
+    grows = () if document["config"]["sampling"] == "saltelli" else _MAY_GROW
+    return ("case", "grasp", *grows)
+
+
+def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+    """Why a study cannot go on with another's shards, in words.
+
+    Raises
+    ------
+    InputError:
+        The old one is no study's document.
+    """
+    check_format(old)
+    lines: list[str] = []
+    try:
+        lines += _differences(old, new)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"not a study's document: {error!r}") from error
+    return lines
+
+
+def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
+    loose = _loose(new)
+    for key in sorted({*old["config"], *new["config"]}):
+        was, now = old["config"].get(key), new["config"].get(key)
+        if was != now and key not in loose:
+            yield f"{key} was {was!r}, is {now!r}"
+    if old["name"] != new["name"]:
+        yield f"the case was {old['name']!r}, is {new['name']!r}"
+    if old["case"] != new["case"] or old["unit"] != new["unit"]:
+        yield "the case is another one"
+    for name in sorted({*old["versions"], *new["versions"]}):
+        was, now = old["versions"].get(name), new["versions"].get(name)
+        if was != now:
+            yield f"{name} was {was}, is {now}"

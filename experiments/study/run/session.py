@@ -1,0 +1,205 @@
+"""One call of ``icage study``: from what was given to results in a folder."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from experiments.cases.named import case_file
+from experiments.cases.with_discs import physical_case
+from experiments.options import check_folder
+from experiments.progress import stage_bar
+from experiments.study.inputs.config import ConfigError, read_toml, study_config
+from experiments.study.report.summary import sentence, summary
+from experiments.study.run.announcement import announcement, warning
+from experiments.study.run.document import differences, fingerprint, study_document, study_of
+from experiments.study.run.folder import (
+    JSON,
+    PAGE,
+    SHARDS,
+    TRIALS,
+    StudyFolder,
+    read_document,
+    write_document,
+)
+from experiments.study.run.shard import Study
+from experiments.study.run.shards import Backend, on_threads, run_study
+from icage.formats.case_json import Case, read_case
+from icage.formats.whole_files import whole_file
+from models import case_paths, object_names
+
+MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A checked study and where it goes."""
+
+    study: Study
+    document: dict[str, Any]
+    folder: StudyFolder
+    shard: int
+
+
+def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: int) -> Session:
+    """Check everything before anything runs.
+
+    Raises
+    ------
+    InputError:
+        A field, the folder, or what is in it already does not fit.
+    """
+    if out is None:
+        raise ConfigError("--out DIR is needed")
+    path = Path(out)
+    table = dict(given)
+    instead = table.pop("instead", None)
+    if "case" in table and table["case"].lower().endswith(".toml"):
+        table = _with_file(Path(table.pop("case")), table)
+        if instead is not None:
+            table["case"] = instead
+    elif instead is not None:
+        raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
+    check_folder("--out", path, (JSON, TRIALS, PAGE))
+    check_folder("--out", path / SHARDS)
+    old = read_document(path)
+    if old is not None and not resume:
+        raise ConfigError(
+            f"--out {out!r} holds a study already; --resume goes on with it, or name another folder"
+        )
+    if old is None and resume and not table.get("case"):
+        raise ConfigError(f"--out {out!r} holds no study to go on with")
+    if old is not None and not table.get("case"):
+        study = study_of(old, _only_trials(table))
+    else:
+        if not table.get("case"):
+            raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
+        case = _case(table)
+        physical = physical_case(case)  # point fingers become discs; their radius bounds errors
+        study = Study(study_config(table, physical.case), physical.case, physical.cage)
+    document = study_document(study)
+    if old is not None:
+        lines = differences(old, document)
+        if lines:
+            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}")
+    folder = StudyFolder(path, fingerprint(document))
+    kept = folder.beyond(study.design.total)
+    if kept:
+        raise ConfigError(
+            f"trials is {study.config.trials}, but --out {out!r} holds {kept} already, and none is "
+            f"thrown away; {kept} or more is needed, or another folder"
+        )
+    return Session(study, document, folder, shard)
+
+
+def _only_trials(table: Mapping[str, Any]) -> int | None:
+    """What may be said of a study that goes on without being told again."""
+    for name in table:
+        if name != "trials":
+            raise ConfigError(
+                f"{name} is given without a CASE: only trials may be; for anything else repeat the "
+                "whole command"
+            )
+    return table.get("trials")
+
+
+def _with_file(path: Path, over: Mapping[str, Any]) -> dict[str, Any]:
+    """The table of a TOML file; what the command line gives replaces it, input by input."""
+    table = read_toml(path)
+    vary = {**table.get("vary", {}), **over.get("vary", {})}
+    merged = {**table, **over, "vary": vary}
+    case = merged.get("case")
+    if isinstance(case, str) and case not in object_names() and not Path(case).is_absolute():
+        merged["case"] = str(path.parent / case)
+    return merged
+
+
+def _case(table: Mapping[str, Any]) -> Case:
+    name, grasp = table["case"], table.get("grasp", 1)
+    if not isinstance(name, str):
+        raise ConfigError(f"case is {name!r}; a word is needed")
+    if name in object_names() and not Path(name).is_file():
+        paths = case_paths(name)
+        if isinstance(grasp, int) and not 1 <= grasp <= len(paths):
+            raise ConfigError(f"grasp is {grasp}; {name} has grasps 1 to {len(paths)}")
+        return read_case(paths[grasp - 1] if isinstance(grasp, int) else paths[0])
+    if grasp != 1:
+        raise ConfigError(f"grasp is {grasp!r}; a case file has one grasp")
+    return read_case(case_file(name))
+
+
+def run_session(
+    session: Session, threads: int | None, scheduler: str | None, figures: bool
+) -> list[str]:
+    """Run what is missing and write all results; the lines to print."""
+    backend = _backend(session, threads, scheduler)
+    with session.folder.alone():
+        return _run(session, backend, figures)
+
+
+def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
+    study, folder = session.study, session.folder
+    total = study.design.total
+    print(announcement(study, session.document), flush=True)
+    doubt = warning(session.document)
+    if doubt is not None:
+        print(f"icage: warning: {doubt}", file=sys.stderr, flush=True)
+    folder.sweep()
+    write_document({**session.document, "finished": False}, folder.path)
+    with stage_bar() as bar:
+        table, length = run_study(
+            study, folder, backend, session.shard, lambda done, whole: bar("trials", done, whole)
+        )
+    found = summary(study.config, study.design, table)
+    stopped = {"early": length.early, "at": length.at, "why": length.why}
+    document = {**session.document, "finished": True, "stopped": stopped, "found": found}
+    write_document(document, folder.path)
+    _write_page(document, folder.path)
+    if figures:
+        _draw(study, document, table, folder.path)
+    name = study.case.name
+    lines = [sentence(found, name)]
+    counts = ", ".join(f"{k} {n.replace('_', ' ')}" for n, k in found["outcomes"].items() if k)
+    lines.append(f"{length.at} of {total} trials ({length.why}): {counts}")
+    lines.append(f"files in {folder.path}")
+    return lines
+
+
+def _backend(session: Session, threads: int | None, scheduler: str | None) -> Backend:
+    if scheduler is None:
+        return on_threads(threads or cores())
+    from experiments.study.run.cluster import on_cluster
+
+    return on_cluster(scheduler, session.document)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # macOS, Windows
+        return os.cpu_count() or 1
+
+
+def _write_page(document: dict[str, Any], folder: Path) -> None:
+    from experiments.study.report.results_md import results_page
+    from experiments.study.run.command import command_line
+
+    with whole_file(folder / PAGE) as part:
+        part.write_text(results_page(document, command_line(document)), encoding="utf-8")
+
+
+def _draw(study: Study, document: dict[str, Any], table: Any, folder: Path) -> None:
+    from experiments.figures import figure_regions
+    from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
+
+    regions = figure_regions(study.cage)
+    draw_map(document, table, study.cage, regions, folder / MAP)
+    if document["found"]["variables"]:
+        draw_rates(document, folder / RATES)
+    if document["found"].get("indices", {}).get("groups"):
+        draw_indices(document, folder / INDICES)

@@ -1,0 +1,166 @@
+"""Run a study: what is missing of it, shard by shard, on threads or on a cluster; then sum up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import closing
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from experiments.intervals import stopped_at
+from experiments.study.run.folder import StudyFolder, read_shards
+from experiments.study.run.rows import table_of, target_trials
+from experiments.study.run.shard import Study, run_trials
+from experiments.study.run.spans import missing
+from sim.world.engine import no_log
+
+SHARD: Final = 500
+"""[trial] In a shard, unless asked otherwise: a few seconds of work."""
+
+Span = tuple[int, int]
+"""First and last trial."""
+
+Report = Callable[[int, int], None]
+"""Progress: (trials done, all)."""
+
+Backend = Callable[[Study, list[Span]], Generator[tuple[Span, pa.Table]]]
+"""Runs spans and yields their tables, in any order. Closed early, it stops."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """How long a study was: ``at`` trials, and why no more."""
+
+    early: bool
+    at: int
+    why: str
+
+
+def run_study(
+    study: Study, folder: StudyFolder, backend: Backend, size: int, report: Report
+) -> tuple[pa.Table, Stopped]:
+    """Run what is missing, keep it shard by shard, and write the whole table.
+
+    The table is the same whatever ran before, in whatever order and in shards of whatever size.
+    """
+    done = folder.finished()
+    if done is not None:
+        stop = _stop(study, target_trials(done))
+        if done.num_rows >= (stop.at if stop else study.design.total):
+            folder.clear()
+            length = stop or _whole(study)
+            table = done.slice(0, length.at)
+            if table.num_rows < done.num_rows:
+                folder.finish(table)
+            return table, length
+        folder.reopen(done)
+    reached = _Prefix(study)
+    shards = folder.shards()
+    for first, table in read_shards(shards):
+        reached.add(first, target_trials(table))
+    total = study.design.total
+    report(reached.known, total)
+    if reached.stop is None:
+        todo = missing(list(shards), total, size)
+        with closing(backend(study, todo)) as pieces:
+            for (first, _), table in pieces:
+                folder.keep(table, first)
+                reached.add(first, target_trials(table))
+                report(reached.known, total)
+                if reached.stop is not None:
+                    break
+    length = reached.stop or _whole(study)
+    tables = [t.slice(0, max(length.at - f, 0)) for f, t in read_shards(folder.shards())]
+    table = pa.concat_tables(tables).replace_schema_metadata(None)
+    _check_whole(table, length.at)
+    folder.finish(table)
+    return table, length
+
+
+def _whole(study: Study) -> Stopped:
+    total = study.design.total
+    why = "all trials that were asked for"
+    if total > study.config.trials:
+        why = "base points are rounded up to a power of two"
+    if study.config.until_half_width is not None:
+        why += f"; the half width is not down to {study.config.until_half_width:g} yet"
+    return Stopped(False, total, why)
+
+
+def _stop(study: Study, reached: Any) -> Stopped | None:
+    wanted, total = study.config.until_half_width, study.design.total
+    if wanted is None:
+        return None
+    at = stopped_at(reached[:total], wanted)
+    if at is None:
+        return None
+    enough = f"the half width is at most {wanted:g}"
+    if at == total:
+        return Stopped(False, at, f"all trials that were asked for; {enough}")
+    return Stopped(True, at, enough)
+
+
+class _Prefix:
+    """What is known of the first trials without a gap: only that decides when to stop."""
+
+    def __init__(self, study: Study) -> None:
+        self._study = study
+        self._ahead: dict[int, Any] = {}
+        self._reached: list[Any] = []
+        self._length = 0
+        self.known = 0
+        self.stop: Stopped | None = None
+
+    def add(self, first: int, reached: Any) -> None:
+        """Note which trials of a shard ended in the target."""
+        self._ahead[first] = reached
+        self.known += len(reached)
+        grown = False
+        while self._length in self._ahead:
+            piece = self._ahead.pop(self._length)
+            self._reached.append(piece)
+            self._length += len(piece)
+            grown = True
+        if grown and self._study.config.until_half_width is not None:
+            self.stop = _stop(self._study, np.concatenate(self._reached))
+
+
+def _check_whole(table: pa.Table, count: int) -> None:
+    """Nothing lost, nothing twice: trials 0..count-1, each once."""
+    if not np.array_equal(table["trial"].to_numpy(), np.arange(count)):
+        raise RuntimeError("the shards of this study do not hold every trial exactly once")
+
+
+def on_threads(threads: int) -> Backend:
+    """Shards on a pool of threads of this process; the engine and our kernels share the cores."""
+
+    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
+        waiting = iter(spans)
+        running: dict[Future[pa.Table], Span] = {}
+        pool = ThreadPoolExecutor(threads)
+        try:
+            with no_log():
+                while True:
+                    for span in waiting:
+                        running[pool.submit(shard_table, study, span)] = span
+                        if len(running) >= threads + 1:
+                            break
+                    if not running:
+                        return
+                    done, _ = wait(running, return_when=FIRST_COMPLETED)
+                    for future in done:
+                        yield running.pop(future), future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+    return backend
+
+
+def shard_table(study: Study, span: Span) -> pa.Table:
+    """The table of trials first..last."""
+    trials = np.arange(span[0], span[1] + 1)
+    return table_of(study, run_trials(study, trials))
