@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binomtest
 
-from experiments.condition_figure import draw_counterexample
+from experiments.figures.paper_condition import draw_counterexample
 from icage.cells.paper_condition import ConditionReport, sample_condition
 from icage.formats.case_json import read_case
 from icage.planner import plan

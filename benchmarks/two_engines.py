@@ -22,7 +22,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from benchmarks.planner import star, targets, timed
-from experiments.drawing.palette import FINGERS
+from experiments.figures.drawing.palette import FINGERS
 from icage.cells.solver import Terrain, search
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.contact_space.exploration import Plane, explore_from

@@ -10,7 +10,7 @@ from experiments.options import file_name
 
 def add_parser(subparsers: Any) -> None:
     """Options of the command."""
-    from experiments.paper import FIGURES
+    from experiments.figures.paper import FIGURES
 
     parser = subparsers.add_parser(
         "figures",
@@ -38,8 +38,8 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from experiments.cases.named import case_file
+    from experiments.figures.paper import FIGURES
     from experiments.options import check_folder
-    from experiments.paper import FIGURES
     from icage.formats.case_json import read_case
 
     out = Path(args.out)
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     names = [name for name in FIGURES if args.only is None or name in args.only]
     check_folder("--out", out, [f"{name}.{args.format}" for name in names], case.sources)
 
-    from experiments.paper.figures import write_figures
+    from experiments.figures.paper.figures import write_figures
 
     for path, words in write_figures(case, names, out, args.format):
         print(f"{path}: {words}", flush=True)

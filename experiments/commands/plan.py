@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
         document = plan_document(answer.cage, answer.regions(), case.name, case.unit)
         json_text(document)  # a number that cannot be written fails before any file appears
     if args.figure is not None:
-        from experiments.figures import draw_plan, figure_regions
+        from experiments.figures.plan import draw_plan, figure_regions
 
         regions = figure_regions(answer.cells)
         draw_plan(answer.cells, regions, case.name, case.unit, Path(args.figure))

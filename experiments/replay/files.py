@@ -17,7 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from experiments.figures import draw_plan, figure_regions
+from experiments.figures.plan import draw_plan, figure_regions
 from experiments.replay.run import Replay, Report, Run, run_document
 from experiments.versions import versions
 from icage.cells.membership import VERDICTS, query

@@ -14,10 +14,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.drawing.canvas import Canvas, Pixels
-from experiments.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
-from experiments.drawing.hand_view import HandView, window_on
-from experiments.drawing.shapes import tidied
+from experiments.figures.drawing.canvas import Canvas, Pixels
+from experiments.figures.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
+from experiments.figures.drawing.hand_view import HandView, window_on
+from experiments.figures.drawing.shapes import tidied
 from experiments.replay.clips import FPS, Clip, clips
 from experiments.replay.mp4 import write_mp4
 from experiments.replay.run import Replay, Report, Run

@@ -12,14 +12,14 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D
 from PIL import Image
 
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.caption import LIGHT, caption_lines
-from experiments.drawing.labels import Clutter, place_labels
-from experiments.drawing.numbers import significant
-from experiments.drawing.palette import FINGERS, OBJECT_FILL, tint
-from experiments.drawing.shapes import as_path, tidied
-from experiments.drawing.sheet import Sheet
-from experiments.figures import draw_plan, figure_regions, plan_sheet
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.caption import LIGHT, caption_lines
+from experiments.figures.drawing.labels import Clutter, place_labels
+from experiments.figures.drawing.numbers import significant
+from experiments.figures.drawing.palette import FINGERS, OBJECT_FILL, tint
+from experiments.figures.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.sheet import Sheet
+from experiments.figures.plan import draw_plan, figure_regions, plan_sheet
 from icage.errors import InputError
 from models import CASES
 from tests.experiments.small import cage_of

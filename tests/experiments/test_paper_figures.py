@@ -12,10 +12,18 @@ import pytest
 import shapely
 from matplotlib.text import Text
 
-from experiments.paper import FIGURES, equilibria, grasps, obstacles, parallelogram, search, sigma
-from experiments.paper.page import SETTINGS
-from experiments.paper.study import Study
-from experiments.paper.tunnel import NONE
+from experiments.figures.paper import (
+    FIGURES,
+    equilibria,
+    grasps,
+    obstacles,
+    parallelogram,
+    search,
+    sigma,
+)
+from experiments.figures.paper.page import SETTINGS
+from experiments.figures.paper.study import Study
+from experiments.figures.paper.tunnel import NONE
 from icage.contact_space.kernels.explore import SEAM
 from icage.formats.case_json import read_case
 from models import CASES

@@ -18,8 +18,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.text import Text
 
-from experiments.drawing.sheet import Bounds
-from experiments.figures import figure_regions
+from experiments.figures.drawing.sheet import Bounds
+from experiments.figures.plan import figure_regions
 from experiments.intervals import wilson
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design

@@ -9,7 +9,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from experiments.figures import figure_regions
+from experiments.figures.plan import figure_regions
 from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
 from experiments.study.report.results_md import results_page
 from experiments.study.run.document import study_of

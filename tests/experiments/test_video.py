@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from experiments.drawing import film_page
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.film_page import MAIN
-from experiments.drawing.plots import Level, Plot
+from experiments.figures.drawing import film_page
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.film_page import MAIN
+from experiments.figures.drawing.plots import Level, Plot
 from experiments.replay import clips, video
 from experiments.replay.files import VIDEO, regions_by_grasp
 from experiments.replay.run import Recorded, Replay, replay
@@ -159,7 +159,7 @@ def test_the_badge_holds_its_words(done: Replay, outcome: str):
 
 
 def test_a_curve_meets_its_levels_and_grows():
-    from experiments.drawing.plots import Curve
+    from experiments.figures.drawing.plots import Curve
 
     plot = Plot((20.0, 30.0, 180.0, 90.0), "t", 1.0, (0.0, 2.0), [Level(1.0, "one")])
     assert plot.at(np.array([0.5]), np.array([1.0])).tolist() == [[100.0, 60.0]]

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from experiments.drawing.palette import FINGERS, INK, Colour, tint
+from experiments.figures.drawing.palette import FINGERS, INK, Colour, tint
 from experiments.study.report.names import WORDS
 from experiments.study.report.pictures import (
     MARGIN,

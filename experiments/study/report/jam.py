@@ -18,8 +18,15 @@ import shapely
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, PathPatch, Polygon
 
-from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
-from experiments.drawing.shapes import as_path
+from experiments.figures.drawing.palette import (
+    FINGERS,
+    INK,
+    OBJECT_EDGE,
+    OBJECT_FILL,
+    PAPER,
+    QUIET_INK,
+)
+from experiments.figures.drawing.shapes import as_path
 from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
 from experiments.study.run.replayed import StudyRerun, filmed_scene, rerun_trial
 from experiments.study.run.shard import worlds_of

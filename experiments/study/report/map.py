@@ -15,8 +15,8 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from experiments.drawing.shapes import tidied
-from experiments.drawing.sheet import Bounds
+from experiments.figures.drawing.shapes import tidied
+from experiments.figures.drawing.sheet import Bounds
 from experiments.study.report.hexagons import Hexagons, bin_hexagons
 from experiments.study.report.map_layout import SCALE, Place, placed
 from experiments.study.report.map_panel import Cells, Panel, draw_panel, draw_scale_bar

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from experiments.drawing.sheet import Bounds
+from experiments.figures.drawing.sheet import Bounds
 from experiments.study.report.pictures import MARGIN, WIDE
 
 _LONG: Final = 2.0

@@ -15,10 +15,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, PathPatch, Rectangle
 from shapely.geometry.base import BaseGeometry
 
-from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
-from experiments.drawing.palette import Colour as Rgb
-from experiments.drawing.shapes import as_path, scale_bar_length, tidied
-from experiments.drawing.sheet import Bounds
+from experiments.figures.drawing.palette import (
+    FINGERS,
+    INK,
+    OBJECT_EDGE,
+    OBJECT_FILL,
+    PAPER,
+    QUIET_INK,
+)
+from experiments.figures.drawing.palette import Colour as Rgb
+from experiments.figures.drawing.shapes import as_path, scale_bar_length, tidied
+from experiments.figures.drawing.sheet import Bounds
 from experiments.study.report.pictures import Page
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage

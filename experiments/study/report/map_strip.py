@@ -12,8 +12,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from experiments.drawing.caption import level_digits
-from experiments.drawing.palette import FINGERS, INK, PAPER
+from experiments.figures.drawing.caption import level_digits
+from experiments.figures.drawing.palette import FINGERS, INK, PAPER
 from experiments.study.report.map_panel import (
     colours,
     draw_crosses,

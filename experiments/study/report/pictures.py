@@ -13,8 +13,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from experiments.drawing.palette import INK, QUIET_INK, RULE
-from experiments.figures import FIGURE_SETTINGS, FORMATS
+from experiments.figures.drawing.palette import INK, QUIET_INK, RULE
+from experiments.figures.plan import FIGURE_SETTINGS, FORMATS
 from icage.errors import InputError
 from icage.formats.whole_files import whole_file
 

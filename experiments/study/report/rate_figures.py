@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from experiments.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
+from experiments.figures.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
 from experiments.study.inputs.variables import VARIABLES
 from experiments.study.report.indices_figure import draw_indices
 from experiments.study.report.map import draw_map

@@ -92,7 +92,7 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
     RecordingError:
         The trial was never closed.
     """
-    from experiments.figures import figure_regions
+    from experiments.figures.plan import figure_regions
     from experiments.replay.video import film
 
     study, ran = done.study, done.ran

@@ -194,7 +194,7 @@ def _write_page(document: dict[str, Any], folder: Path) -> None:
 
 
 def _draw(study: Study, document: dict[str, Any], table: Any, folder: Path) -> None:
-    from experiments.figures import figure_regions
+    from experiments.figures.plan import figure_regions
     from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
 
     regions = figure_regions(study.cage)

@@ -9,10 +9,10 @@ import numpy as np
 import shapely
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from experiments.drawing.palette import INK, QUIET_INK
-from experiments.drawing.plan_view import draw_plan_view
-from experiments.drawing.sheet import lay_out
-from experiments.figures import FIGURE_SETTINGS
+from experiments.figures.drawing.palette import INK, QUIET_INK
+from experiments.figures.drawing.plan_view import draw_plan_view
+from experiments.figures.drawing.sheet import lay_out
+from experiments.figures.plan import FIGURE_SETTINGS
 from icage.arrays import FloatArray
 from icage.cage import Cage, Puncture
 from icage.cells.regions import caging_regions

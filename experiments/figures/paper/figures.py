@@ -8,9 +8,9 @@ from pathlib import Path
 
 import matplotlib
 
-from experiments.paper import FIGURES
-from experiments.paper.page import SETTINGS, save
-from experiments.paper.study import Study
+from experiments.figures.paper import FIGURES
+from experiments.figures.paper.page import SETTINGS, save
+from experiments.figures.paper.study import Study
 from icage.errors import OutputError
 from icage.formats.case_json import Case
 
@@ -32,7 +32,7 @@ def write_figures(
         raise OutputError(f"{str(out)!r} cannot be made: {error.strerror}") from error
     for name in names:
         with matplotlib.rc_context(SETTINGS):
-            figure, note = import_module(f"experiments.paper.{name}").draw(study)
+            figure, note = import_module(f"experiments.figures.paper.{name}").draw(study)
             path = out / f"{name}.{kind}"
             save(figure, path)
         yield path, FIGURES[name] + ("" if note is None else f"; {note}")

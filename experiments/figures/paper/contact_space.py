@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK
+from experiments.figures.paper.page import (
     bounds_of,
     draw_hand,
     heading,
@@ -21,7 +21,7 @@ from experiments.paper.page import (
     space_name,
     space_panel,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.contact_space.formation_scale import formation_scale
 
 _STEPS = 240

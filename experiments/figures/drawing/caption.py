@@ -9,10 +9,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.text import Text
 
-from experiments.drawing.numbers import significant
-from experiments.drawing.palette import FINGERS, INK, QUIET_INK
-from experiments.drawing.shapes import scale_bar_length
-from experiments.drawing.sheet import Sheet
+from experiments.figures.drawing.numbers import significant
+from experiments.figures.drawing.palette import FINGERS, INK, QUIET_INK
+from experiments.figures.drawing.shapes import scale_bar_length
+from experiments.figures.drawing.sheet import Sheet
 from icage.cage import Cage
 
 ROW = 14.0

@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import ArrayLike, NDArray
 
-from experiments.drawing.palette import INK, Colour
+from experiments.figures.drawing.palette import INK, Colour
 
 Pixels = NDArray[np.uint8]
 """(height, width, 4), red, green, blue, alpha."""

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, tint
-from experiments.paper.page import bounds_of, draw_hand, fill, new_sheet, object_panel
-from experiments.paper.study import Study
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, tint
+from experiments.figures.paper.page import bounds_of, draw_hand, fill, new_sheet, object_panel
+from experiments.figures.paper.study import Study
 from icage.contact_space.sectors import Sector, common_area, concurrency_point, sector_at
 
 _REACH = 6.0

@@ -11,11 +11,18 @@ from matplotlib.patches import Circle, Patch, PathPatch, Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from experiments.drawing.caption import DARK, LIGHT
-from experiments.drawing.labels import Clutter, place_labels
-from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, PAPER, QUIET_INK
-from experiments.drawing.shapes import as_path
-from experiments.drawing.sheet import View
+from experiments.figures.drawing.caption import DARK, LIGHT
+from experiments.figures.drawing.labels import Clutter, place_labels
+from experiments.figures.drawing.palette import (
+    FINGERS,
+    INK,
+    OBJECT_EDGE,
+    OBJECT_FILL,
+    PAPER,
+    QUIET_INK,
+)
+from experiments.figures.drawing.shapes import as_path
+from experiments.figures.drawing.sheet import View
 from icage.cage import Cage, Puncture
 from icage.cells.regions import FingerRegion
 

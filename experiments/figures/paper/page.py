@@ -16,8 +16,8 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from experiments.drawing.numbers import significant
-from experiments.drawing.palette import (
+from experiments.figures.drawing.numbers import significant
+from experiments.figures.drawing.palette import (
     FINGERS,
     INK,
     OBJECT_EDGE,
@@ -28,8 +28,8 @@ from experiments.drawing.palette import (
     Colour,
     tint,
 )
-from experiments.drawing.shapes import as_path
-from experiments.paper.study import Study
+from experiments.figures.drawing.shapes import as_path
+from experiments.figures.paper.study import Study
 from icage.formats.whole_files import whole_file
 
 FORMATS = ("svg", "pdf", "png")

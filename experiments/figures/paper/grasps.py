@@ -9,10 +9,17 @@ import shapely
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Polygon, Rectangle
 
-from experiments.drawing.palette import FINGERS, INK, OBJECT_EDGE, OBJECT_FILL, ORANGE, PAPER
-from experiments.drawing.shapes import as_path
-from experiments.paper.page import WIDTH, bounds_of, new_sheet
-from experiments.paper.study import Study
+from experiments.figures.drawing.palette import (
+    FINGERS,
+    INK,
+    OBJECT_EDGE,
+    OBJECT_FILL,
+    ORANGE,
+    PAPER,
+)
+from experiments.figures.drawing.shapes import as_path
+from experiments.figures.paper.page import WIDTH, bounds_of, new_sheet
+from experiments.figures.paper.study import Study
 from icage.geometry.statics import free_fingers
 
 _MOST = 120

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.caption import level_digits
-from experiments.drawing.numbers import significant
-from experiments.drawing.object_view import ObjectView
-from experiments.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
-from experiments.drawing.plots import Box, Curve, Level, Plot
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.caption import level_digits
+from experiments.figures.drawing.numbers import significant
+from experiments.figures.drawing.object_view import ObjectView
+from experiments.figures.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
+from experiments.figures.drawing.plots import Box, Curve, Level, Plot
 from experiments.words import END_WORDS, VERDICT_WORDS
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY
-from experiments.paper.page import heading, new_sheet
-from experiments.paper.study import Study
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY
+from experiments.figures.paper.page import heading, new_sheet
+from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.basins import escape_edge, meetings
 from icage.contact_space.kernels.explore import TUNNEL

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from experiments.drawing.palette import BAD, FINGERS, INK, ORANGE, tint
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import BAD, FINGERS, INK, ORANGE, tint
+from experiments.figures.paper.page import (
     HALO,
     bounds_of,
     draw_hand,
@@ -21,7 +21,7 @@ from experiments.paper.page import (
     space_name,
     space_panel,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.contact_space.obstacles import obstacles
 from icage.contact_space.third_finger import Parallelogram
 

@@ -13,9 +13,9 @@ import shapely
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.caption import DARK, LIGHT
-from experiments.drawing.palette import (
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.caption import DARK, LIGHT
+from experiments.figures.drawing.palette import (
     FINGERS,
     INK,
     OBJECT_EDGE,
@@ -24,7 +24,7 @@ from experiments.drawing.palette import (
     QUIET_INK,
     RULE,
 )
-from experiments.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
 from icage.cells.regions import FingerRegion
 from icage.hand import Placement

@@ -9,11 +9,11 @@ import shapely
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.caption import DARK, LIGHT
-from experiments.drawing.palette import FINGERS, OBJECT_EDGE, OBJECT_FILL, PAPER
-from experiments.drawing.plots import Box
-from experiments.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.caption import DARK, LIGHT
+from experiments.figures.drawing.palette import FINGERS, OBJECT_EDGE, OBJECT_FILL, PAPER
+from experiments.figures.drawing.plots import Box
+from experiments.figures.drawing.shapes import as_path, tidied
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion

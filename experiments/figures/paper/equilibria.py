@@ -7,15 +7,15 @@ import shapely
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from experiments.drawing.palette import BAD, QUIET_INK
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import BAD, QUIET_INK
+from experiments.figures.paper.page import (
     bounds_of,
     draw_hand,
     heading,
     new_sheet,
     object_panel,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.equilibria import pair_grasps, three_finger_kind
 from icage.contact_space.sectors import concurrency_point, sector_at

@@ -11,9 +11,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, SKY, tint
-from experiments.paper.obstacles import OBSTACLE
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, SKY, tint
+from experiments.figures.paper.obstacles import OBSTACLE
+from experiments.figures.paper.page import (
     bounds_of,
     draw_hand,
     fill,
@@ -22,7 +22,7 @@ from experiments.paper.page import (
     object_panel,
     space_name,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.formation_scale import ScaleForm
 from icage.contact_space.free_regions import exterior_rings, regions_of_rectangle

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.drawing.canvas import Canvas
-from experiments.drawing.palette import INK, QUIET_INK, RULE, Colour
+from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.palette import INK, QUIET_INK, RULE, Colour
 
 Box = tuple[float, float, float, float]
 """left, top, right, bottom, [pixel]."""

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
-from experiments.drawing.shapes import as_path, tidied
-from experiments.paper.obstacles import draw_obstacles
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
+from experiments.figures.drawing.shapes import as_path, tidied
+from experiments.figures.paper.obstacles import draw_obstacles
+from experiments.figures.paper.page import (
     bounds_of,
     draw_hand,
     heading,
@@ -22,7 +22,7 @@ from experiments.paper.page import (
     space_name,
     space_panel,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.basins import escape_edge
 from icage.contact_space.kernels.explore import PINCH, SEAM, TUNNEL

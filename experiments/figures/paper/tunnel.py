@@ -7,8 +7,8 @@ import shapely
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from experiments.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
-from experiments.paper.page import (
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
+from experiments.figures.paper.page import (
     HALO,
     bounds_of,
     draw_hand,
@@ -18,7 +18,7 @@ from experiments.paper.page import (
     object_panel,
     space_name,
 )
-from experiments.paper.study import Study
+from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
 from icage.contact_space.kernels.explore import PINCH, SEAM
 from icage.geometry.statics import free_fingers

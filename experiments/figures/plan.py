@@ -13,9 +13,9 @@ import numpy as np
 import shapely
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from experiments.drawing.caption import caption_lines, draw_caption, strip_height
-from experiments.drawing.plan_view import draw_plan_view, frame_of
-from experiments.drawing.sheet import Bounds, Sheet, lay_out
+from experiments.figures.drawing.caption import caption_lines, draw_caption, strip_height
+from experiments.figures.drawing.plan_view import draw_plan_view, frame_of
+from experiments.figures.drawing.sheet import Bounds, Sheet, lay_out
 from icage.cage import Cage, Puncture
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.errors import InputError

@@ -1,0 +1,1 @@
+"""Pictures of plans: the plan figure, the figures of the paper, and what all drawings share."""
