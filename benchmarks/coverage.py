@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
-from experiments.intervals import (
+from experiments.io.intervals import (
     AT_LEAST,
     CONFIDENCE,
     LOOK_EVERY,

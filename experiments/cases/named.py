@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from experiments.options import reason
+from experiments.io.options import reason
 from icage.errors import InputError
 from icage.formats.case_json import Case, Object, parse_unit, read_case, read_object
 from icage.formats.svg.outline import read_svg

@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.options import add_json, check_output, count, file_name, seed
+from experiments.io.options import add_json, check_output, count, file_name, seed
 
 
 def add_parser(subparsers: Any) -> None:
@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     check_output("--json", args.json, *case.sources)
     from experiments.escape.document import escape_document, escape_table
     from experiments.escape.run import escape  # only now: engine and planner take a second to load
-    from experiments.progress import stage_bar
+    from experiments.io.progress import stage_bar
     from icage.formats.json_out import write_json
 
     with stage_bar() as report:

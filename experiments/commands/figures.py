@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.options import file_name
+from experiments.io.options import file_name
 
 
 def add_parser(subparsers: Any) -> None:
@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.cases.named import case_file
     from experiments.figures.paper import FIGURES
-    from experiments.options import check_folder
+    from experiments.io.options import check_folder
     from icage.formats.case_json import read_case
 
     out = Path(args.out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import (
+from experiments.io.options import (
     UNITS,
     add_json,
     check_output,
@@ -15,7 +15,7 @@ from experiments.options import (
     number,
     positive,
 )
-from experiments.options import seed as seed_option
+from experiments.io.options import seed as seed_option
 
 if TYPE_CHECKING:
     from icage.arrays import FloatArray
@@ -110,7 +110,7 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
 
     import numpy as np
 
-    from experiments.progress import stage_bar
+    from experiments.io.progress import stage_bar
     from icage.grasps.search import Wanted, best_grasps
     from icage.hand import HandShape
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.options import UNITS, add_json, check_output, file_name, positive
+from experiments.io.options import UNITS, add_json, check_output, file_name, positive
 
 
 def add_parser(subparsers: Any) -> None:

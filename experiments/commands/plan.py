@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.options import add_json, check_output, file_name, same
+from experiments.io.options import add_json, check_output, file_name, same
 
 METHODS = ("cells", "contact-space", "both")
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from experiments.options import add_json, check_folder, check_output, count, file_name
+from experiments.io.options import add_json, check_folder, check_output, count, file_name
 
 
 def add_parser(subparsers: Any) -> None:
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         check_folder("--out", Path(args.out), ("replay.json", "trials.parquet"))
 
-    from experiments.progress import stage_bar
+    from experiments.io.progress import stage_bar
     from experiments.regress.baseline import baseline_path
     from experiments.regress.junit import junit
     from experiments.regress.measure import SEED

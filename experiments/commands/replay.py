@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import count, file_name, seed
+from experiments.io.options import count, file_name, seed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from experiments.cases.named import case_file
-    from experiments.options import check_folder
+    from experiments.io.options import check_folder
     from icage.formats.case_json import read_case
     from models import case_paths, object_names
 
@@ -58,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     folder = Path(args.out)
     cases = [read_case(path) for path in paths]
 
-    from experiments.progress import stage_bar
+    from experiments.io.progress import stage_bar
     from experiments.replay.files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
     from experiments.replay.run import replay  # only now: engine and planner take a second to load
     from icage.sampling import SamplingError

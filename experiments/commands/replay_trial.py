@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import add_json, check_output, file_name, row_index
+from experiments.io.options import add_json, check_output, file_name, row_index
 
 if TYPE_CHECKING:
     from experiments.replay.recorded import Rerun
@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     """Close again, compare, film; 1 if it differs on the same versions."""
     from pathlib import Path
 
-    from experiments.options import same
+    from experiments.io.options import same
     from icage.errors import InputError
 
     folder = Path(args.folder)

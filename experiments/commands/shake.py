@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.options import add_json, check_output, file_name, seed
+from experiments.io.options import add_json, check_output, file_name, seed
 
 
 def add_parser(subparsers: Any) -> None:

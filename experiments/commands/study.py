@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from experiments.options import count, file_name, number, positive, seed
+from experiments.io.options import count, file_name, number, positive, seed
 from experiments.study.inputs.fields import HELP
 
 if TYPE_CHECKING:

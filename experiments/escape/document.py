@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from experiments.escape.run import Assault, Escape
-from experiments.intervals import rate_upper
+from experiments.io.intervals import rate_upper
 from sim.attack.held import Attacks
 from sim.attack.measured_sigma_max import Measured
 

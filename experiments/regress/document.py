@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from experiments.escape.run import Assault
-from experiments.intervals import rate_upper
+from experiments.io.intervals import rate_upper
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row

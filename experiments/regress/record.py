@@ -11,10 +11,10 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from experiments.io.versions import versions
 from experiments.regress.measure import Row
 from experiments.replay.files import JSON, TRIALS, trial_table, whole_folder
 from experiments.replay.run import Replay, run_document
-from experiments.versions import versions
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from experiments.intervals import rate_upper
+from experiments.io.intervals import rate_upper
 
 HEAD: Final = (
     "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",

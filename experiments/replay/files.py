@@ -18,8 +18,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.figures.plan import draw_plan, figure_regions
+from experiments.io.versions import versions
 from experiments.replay.run import Replay, Report, Run, run_document
-from experiments.versions import versions
 from icage.cells.membership import VERDICTS, query
 from icage.cells.regions import FingerRegion
 from icage.errors import OutputError

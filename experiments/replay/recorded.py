@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import shapely
 
-from experiments.versions import versions
+from experiments.io.versions import versions
 from icage.cage import Cage, GraspMinimum
 from icage.cells.regions import FingerRegion
 from icage.errors import InputError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from experiments.progress import stage_bar
+from experiments.io.progress import stage_bar
 from experiments.replay.recorded import Rerun, recorded_cage, recorded_regions
 from experiments.replay.run import Recorded, Replay, Run
 from experiments.replay.video import film

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
+from experiments.io.versions import versions
 from experiments.shake.run import PLAY_TOLERANCE, Shaken
-from experiments.versions import versions
 from sim.grip.form_closure import CARRYING
 from sim.grip.play import Play
 from sim.grip.shake import HELD_SHIFT, HELD_TURN, PUSH

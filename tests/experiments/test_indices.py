@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm, qmc, sobol_indices
 
-from experiments.intervals import wilson
+from experiments.io.intervals import wilson
 from experiments.study.report.indices import (
     FEWEST,
     RAREST,

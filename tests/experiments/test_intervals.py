@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom, binomtest
 
 from benchmarks.coverage import exact_stops, looks, simulated_stops
-from experiments.intervals import (
+from experiments.io.intervals import (
     AT_LEAST,
     LOOK_EVERY,
     exact_coverage,

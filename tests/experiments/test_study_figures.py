@@ -20,7 +20,7 @@ from matplotlib.text import Text
 
 from experiments.figures.drawing.sheet import Bounds
 from experiments.figures.plan import figure_regions
-from experiments.intervals import wilson
+from experiments.io.intervals import wilson
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.distributions import Distribution

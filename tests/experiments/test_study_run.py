@@ -11,7 +11,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from experiments.intervals import stopped_at
+from experiments.io.intervals import stopped_at
 from experiments.study.run import shards as run
 from experiments.study.run.folder import StudyFolder
 from tests.cli.runner import here

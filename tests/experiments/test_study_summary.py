@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from experiments.intervals import wilson
+from experiments.io.intervals import wilson
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.distributions import Distribution

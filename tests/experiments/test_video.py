@@ -19,11 +19,11 @@ from experiments.figures.drawing import film_page
 from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.film_page import MAIN
 from experiments.figures.drawing.plots import Level, Plot
+from experiments.io.words import END_WORDS
 from experiments.replay import clips, video
 from experiments.replay.files import VIDEO, regions_by_grasp
 from experiments.replay.run import Recorded, Replay, replay
 from experiments.replay.video import SIZE, film
-from experiments.words import END_WORDS
 from sim.camera.renderer import find_backend
 from sim.closing.judge import OUTCOMES
 from tests.cli.runner import here

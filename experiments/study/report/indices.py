@@ -22,7 +22,7 @@ from typing import Final
 import numpy as np
 from scipy.stats import bootstrap, sobol_indices
 
-from experiments.intervals import CONFIDENCE, wilson
+from experiments.io.intervals import CONFIDENCE, wilson
 from icage.arrays import AnyArray, FloatArray, IntArray
 from icage.errors import InputError
 

@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, Polygon
 
 from experiments.figures.drawing.caption import level_digits
 from experiments.figures.drawing.palette import FINGERS, INK, PAPER
+from experiments.io.words import NOT_CLOSED
 from experiments.study.report.map_panel import (
     colours,
     draw_crosses,
@@ -23,7 +24,6 @@ from experiments.study.report.map_panel import (
 )
 from experiments.study.report.names import number
 from experiments.study.report.pictures import MARGIN, ROW, Page
-from experiments.words import NOT_CLOSED
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from experiments.intervals import wilson
+from experiments.io.intervals import wilson
 from experiments.study.inputs.variables import Variable, own_unit
 
 WORDS: Final = {

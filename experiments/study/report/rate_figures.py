@@ -16,6 +16,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from experiments.figures.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
+from experiments.io.words import NOT_CLOSED
 from experiments.study.inputs.variables import VARIABLES
 from experiments.study.report.indices_figure import draw_indices
 from experiments.study.report.map import draw_map
@@ -30,7 +31,6 @@ from experiments.study.report.pictures import (
     settings,
     write,
 )
-from experiments.words import NOT_CLOSED
 from icage.errors import InputError
 
 __all__ = ["draw_indices", "draw_map", "draw_rates"]

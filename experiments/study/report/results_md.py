@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from experiments.intervals import rate_upper
+from experiments.io.intervals import rate_upper
+from experiments.io.words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
 from experiments.study.inputs.variables import VARIABLES
 from experiments.study.report.method import method
 from experiments.study.report.names import WORDS, display, merged, percent
 from experiments.study.report.summary import sentence
-from experiments.words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
 
 _ENDS: Final = ("target", "other_grasp", "escaped")
 

@@ -9,14 +9,14 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 
-from experiments.intervals import wilson
+from experiments.io.intervals import wilson
+from experiments.io.words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.report.indices import sobol, split
 from experiments.study.report.names import percent
 from experiments.study.run.rows import target_trials
 from experiments.study.run.shard import STUDY_OUTCOMES
-from experiments.words import NOT_CLOSED
 from icage.arrays import BoolArray, FloatArray
 from icage.cells.membership import VERDICTS
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from experiments.io.words import VERDICT_WORDS
 from experiments.study.report.names import number
 from experiments.study.run.shard import Study
-from experiments.words import VERDICT_WORDS
 
 
 def announcement(study: Study, document: Mapping[str, Any]) -> str:

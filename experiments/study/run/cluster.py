@@ -19,10 +19,10 @@ from typing import Any, Final
 
 import pyarrow as pa
 
+from experiments.io.versions import versions
 from experiments.study.run.document import study_of
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, Span, shard_table
-from experiments.versions import versions
 from icage.errors import InputError
 
 RETRIES: Final = 5

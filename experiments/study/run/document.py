@@ -8,10 +8,10 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from experiments.io.versions import versions
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.distributions import Distribution
 from experiments.study.run.shard import Study
-from experiments.versions import versions
 from icage.cells.membership import VERDICTS, query
 from icage.errors import InputError
 from icage.formats.case_json import Case

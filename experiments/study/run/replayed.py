@@ -12,14 +12,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from experiments.progress import stage_bar
+from experiments.io.progress import stage_bar
+from experiments.io.versions import versions
 from experiments.replay.recorded import RecordingError
 from experiments.replay.run import Recorded, Replay, Run
 from experiments.study.run.document import study_of
 from experiments.study.run.folder import SHARDS, TRIALS, read_document
 from experiments.study.run.rows import table_of
 from experiments.study.run.shard import Ran, Study, run_trials, worlds_of
-from experiments.versions import versions
 from icage.arrays import FloatArray
 from icage.formats.whole_files import whole_file
 from icage.sampling import Starts

@@ -11,8 +11,8 @@ from typing import Any
 
 from experiments.cases.named import case_file
 from experiments.cases.with_discs import physical_case
-from experiments.options import check_folder
-from experiments.progress import stage_bar
+from experiments.io.options import check_folder
+from experiments.io.progress import stage_bar
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
 from experiments.study.report.summary import sentence, summary
 from experiments.study.run.announcement import announcement, warning

@@ -11,11 +11,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from experiments.io.words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.placements import Intended, collides, moved
 from experiments.study.inputs.variants import Key, Variant, Variants
-from experiments.words import NOT_CLOSED
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.cells.membership import COLLIDES, Answers, query

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 
-from experiments.intervals import stopped_at
+from experiments.io.intervals import stopped_at
 from experiments.study.run.folder import StudyFolder, read_shards
 from experiments.study.run.rows import table_of, target_trials
 from experiments.study.run.shard import Study, run_trials

@@ -1,0 +1,1 @@
+"""What all commands share at their edges: options, progress, versions, words, intervals."""
