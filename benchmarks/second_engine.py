@@ -22,8 +22,8 @@ from sim.chipmunk.closing import close_many_second
 from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.world.held_hand import held_model
+from tests.sim.chipmunk.test_chipmunk import on_the_way_out
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
-from tests.sim.test_second import on_the_way_out
 
 GRASPS = {
     "T": t_shape(),

@@ -8,7 +8,7 @@ non-zero if any of them failed.
     python3 -m tests --fast           without the tests marked slow
     python3 -m tests --lowest --fast  only pytest, with the declared lower bounds installed
     python3 -m tests --here           in the environment of this Python
-    python3 -m tests --fast tests/cli any further argument goes to pytest
+    python3 -m tests --fast tests/sim any further argument goes to pytest
 """
 
 from __future__ import annotations

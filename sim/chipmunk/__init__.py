@@ -1,1 +1,1 @@
-"""A second opinion: closings and random attacks in another physics engine (Chipmunk2D, by pymunk)."""
+"""A second opinion: closings and attacks in another physics engine (Chipmunk2D, by pymunk)."""

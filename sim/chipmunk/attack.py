@@ -23,8 +23,8 @@ def random_attack_second(
     """Pull at the object from positions ``starts`` (N, 6), the hand held at ``openings`` (N,).
 
     Openings are in [diameter]: the hand may close, but never open wider. Given the same ``rng`` the
-    wrenches are those of ``sim.attack.held.attack`` with a ``RandomDriver``; the motor answers to where
-    the hand is.
+    wrenches are those of ``sim.attack.held.attack`` with a ``RandomDriver``; the motor answers to
+    where the hand is.
 
     Raises
     ------

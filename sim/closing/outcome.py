@@ -20,7 +20,8 @@ class ClosingOutcome:
     ending:
         One of ``sim.closing.step_check.ENDINGS``.
     steps:
-        Steps taken, each of ``SimConfig.time_step``, after the free travel (``sim.closing.approach``).
+        Steps taken, each of ``SimConfig.time_step``, after the free travel
+        (``sim.closing.approach``).
     penetration_max, penetration_rest:
         Deepest finger disc inside the true outline, while moving and after the last step.
     shape_error_max:
@@ -49,8 +50,8 @@ class ClosingOutcome:
 class ClosingOutcomes:
     """N closings: the arrays of ``ClosingOutcome``, with placements (N, 4) = x, y, theta, sigma.
 
-    ``ending`` holds codes into ``sim.closing.step_check.ENDINGS``. Rows of diverged closings hold whatever the
-    engine last had; nothing in them means anything.
+    ``ending`` holds codes into ``sim.closing.step_check.ENDINGS``. Rows of diverged closings hold
+    whatever the engine last had; nothing in them means anything.
     """
 
     start: FloatArray

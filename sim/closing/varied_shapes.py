@@ -2,8 +2,8 @@
 
 Trials that share a scene run together on one model; the others, one model each, run together where
 their models have the same layout. Every trial is looked at every ``LOOK_EVERY`` steps. Its result
-depends on nothing but its own scene, world and start. Free travel is skipped (``sim.closing.approach``)
-but on a tilted table, where the object slides meanwhile.
+depends on nothing but its own scene, world and start. Free travel is skipped
+(``sim.closing.approach``) but on a tilted table, where the object slides meanwhile.
 """
 
 from __future__ import annotations

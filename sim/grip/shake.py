@@ -1,7 +1,7 @@
 """The shake test: is the object held by fingers locked at the size they closed to?
 
-The hand is made rigid (``sim.world.rigid_hand``) and the object pushed: a force at its centroid in 8
-directions, a torque both ways, each from rest in the grasp, then a random shake of many wrenches
+The hand is made rigid (``sim.world.rigid_hand``) and the object pushed: a force at its centroid in
+8 directions, a torque both ways, each from rest in the grasp, then a random shake of many wrenches
 one after another. The habit of grasp benchmarks, in the plane.
 
 *Held* means: in no push and at no moment of the shake was the centroid further than

@@ -60,7 +60,8 @@ class SimConfig:
 
     linkage_compliance: float = 0.0
     """[s^2 / mass] How far a finger yields from its place in the similar triangle, per force. 0:
-    rigid; above 0 three springs of stiffness 1 / this are the linkage (``sim.world.hand_model``)."""
+    rigid; above 0 three springs of stiffness 1 / this are the linkage
+    (``sim.world.hand_model``)."""
 
     solimp: tuple[float, float, float, float, float] = (0.9999, 0.99999, 1e-4, 0.5, 2.0)
     """MuJoCo's impedance, for a resting penetration below 1e-6. Its defaults leave an angle

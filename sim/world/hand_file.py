@@ -1,6 +1,7 @@
-"""Write the hand as MJCF for reading: ``python -m sim.world.hand_file`` renews ``models/hand/hand.xml``.
+"""Write the hand as MJCF: ``python -m sim.world.hand_file`` renews ``models/hand/hand.xml``.
 
-The simulation never reads the file; it builds the hand of each case anew (``sim.world.hand_model``).
+The simulation never reads the file; it builds the hand of each case anew
+(``sim.world.hand_model``).
 """
 
 from __future__ import annotations

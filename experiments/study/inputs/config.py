@@ -32,8 +32,9 @@ class ConfigError(InputError):
 class StudyConfig:
     """What a study runs. Nothing else changes its numbers but the versions of what computes.
 
-    ``experiments.study.inputs.fields.HELP`` says what each field means. ``vary`` holds a distribution per
-    variable of ``experiments.study.inputs.variables``; those not named keep their nominal value.
+    ``experiments.study.inputs.fields.HELP`` says what each field means. ``vary`` holds a
+    distribution per variable of ``experiments.study.inputs.variables``; those not named keep their
+    nominal value.
     """
 
     case: str

@@ -1,1 +1,1 @@
-"""Ready studies, one TOML file each; ``python -m experiments.study.ready`` runs them for every tool."""
+"""Ready studies, a TOML file each; ``python -m experiments.study.ready`` runs all of them."""

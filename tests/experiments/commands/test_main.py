@@ -1,0 +1,186 @@
+"""Exit codes beyond input errors, and a help that does not make anybody wait."""
+
+from __future__ import annotations
+
+import argparse
+import pkgutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import experiments.commands
+from experiments import cli
+from models import CASES
+from tests.experiments.commands.runner import here
+
+CASE = str(CASES / "L_best.json")
+ICAGE = [sys.executable, "-m", "experiments.cli"]
+HEAVY = {"numpy", "scipy", "shapely", "numba", "mujoco", "matplotlib", "PIL", "pyarrow", "tqdm"}
+
+
+def test_help_loads_nothing_heavy():
+    script = (
+        "import sys\nfrom experiments.cli import main\n"
+        "try:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
+        "print(*sorted(sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert not HEAVY & set(done.stderr.split())
+
+
+def test_help_names_every_command():
+    done = subprocess.run([*ICAGE, "--help"], capture_output=True, text=True, check=True)
+    for module in pkgutil.iter_modules(experiments.commands.__path__):
+        assert module.name.replace("_", "-") in done.stdout.split()
+
+
+def test_every_command_has_help(capsys: Any):
+    for module in pkgutil.iter_modules(experiments.commands.__path__):
+        name = module.name.replace("_", "-")
+        result = here(capsys, name, "--help")
+        assert result.code == 0
+        assert result.out.startswith(f"usage: icage {name}")
+
+
+def test_the_version(capsys: Any):
+    assert here(capsys, "--version").out.startswith("icage 0.")
+
+
+def raising(error: BaseException) -> Any:
+    def run(_: argparse.Namespace) -> int:
+        raise error
+
+    return run
+
+
+def test_our_own_fault_is_exit_1_with_one_line(monkeypatch: Any, capsys: Any):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(ZeroDivisionError("x\ny")))
+    result = here(capsys, "plan", CASE)
+    assert (result.code, result.out) == (1, "")
+    assert result.err.count("\n") == 1
+    assert "ZeroDivisionError: x y" in result.err
+    assert "ICAGE_DEBUG=1" in result.err
+
+
+def test_an_interrupt_inside_a_compiled_function_is_one(monkeypatch: Any, capsys: Any):
+    error = SystemError("<built-in function> returned a result with an exception set")
+    error.__cause__ = SystemError("another compiled function between")
+    error.__cause__.__context__ = KeyboardInterrupt()
+    monkeypatch.setattr("experiments.commands.plan.run", raising(error))
+    result = here(capsys, "plan", CASE)
+    assert (result.code, result.out, result.err) == (130, "", "icage: error: interrupted\n")
+
+
+def test_a_traceback_for_those_who_ask(monkeypatch: Any):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(ZeroDivisionError()))
+    monkeypatch.setenv("ICAGE_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        cli.main(["plan", CASE])
+
+
+def wait_until_idle(pid: int) -> None:
+    """Until a process has used no processor time for a second; at most a minute."""
+    stat = Path(f"/proc/{pid}/stat")
+    if not stat.exists():
+        time.sleep(3.0)
+        return
+    last = -1
+    for _ in range(60):
+        time.sleep(1.0)
+        used = sum(map(int, stat.read_text().rpartition(")")[2].split()[11:13]))
+        if used == last:
+            return
+        last = used
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_an_interrupt_is_exit_130_without_a_traceback():
+    command = subprocess.Popen(
+        [*ICAGE, "query", CASE, "-"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # whoever starts tests in the background of a shell has interrupts ignored by inheritance
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    wait_until_idle(command.pid)  # it waits for its placements
+    command.send_signal(signal.SIGINT)
+    out, err = command.communicate(timeout=60)
+    assert (command.returncode, out) == (130, "")
+    assert "Traceback" not in err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX pipes")
+def test_a_reader_that_goes_away_is_no_drama():
+    command = subprocess.Popen(
+        [*ICAGE, "plan", CASE, "--json", "-"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert command.stdout is not None
+    assert command.stderr is not None
+    command.stdout.close()
+    err = command.stderr.read()
+    assert command.wait(timeout=60) == 1
+    assert err == ""
+
+
+def test_an_outline_becomes_a_case_file(tmp_path: Path, capsys: Any):
+    from icage.formats.case_json import read_object
+    from models import outline_path
+
+    file = tmp_path / "saw.json"
+    drawing = str(outline_path("saw").parent / "saw.svg")
+    options = ["--width", "450", "--tolerance", "1.5", "--unit", "mm", "--json", str(file)]
+    result = here(capsys, "outline", drawing, *options)
+    assert result.code == 0
+    assert result.out.startswith("saw: 53 vertices")
+    made, shipped = read_object(file), read_object(outline_path("saw"))
+    assert made.outline.vertices == pytest.approx(shipped.outline.vertices, abs=1e-9)
+    assert made.unit == shipped.unit == "mm"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX streams")
+@pytest.mark.parametrize("further", [[], ["--json", "-"]])
+def test_a_closed_standard_output_is_no_drama(further: list[str]):
+    command = 'exec "$@" >&-'
+    done = subprocess.run(
+        ["sh", "-c", command, "sh", *ICAGE, "plan", CASE, *further], stderr=subprocess.PIPE
+    )
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX streams")
+def test_nothing_meant_for_a_closed_standard_error_lands_on_standard_output():
+    done = subprocess.run(
+        ["sh", "-c", 'exec "$@" 2>&-', "sh", *ICAGE, "plan", "none.json"], stdout=subprocess.PIPE
+    )
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="needs /dev/full")
+def test_a_full_standard_output_is_exit_2():
+    """As a stream that is open already: nothing here may name the device as a file to write."""
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [*ICAGE, "plan", CASE, "--json", "-"], stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert done.returncode == 2
+    assert done.stderr == "icage: error: the answer cannot be written: No space left on device\n"
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs /proc")
+@pytest.mark.parametrize(
+    "arguments", [("plan", "--json", "/proc/x.json"), ("replay", "--out", "/proc/x")]
+)
+def test_a_place_that_takes_no_file(arguments: tuple[str, ...], capsys: Any):
+    command, *option = arguments
+    assert "cannot be written" in here(capsys, command, CASE, *option).error_line()

@@ -1,0 +1,227 @@
+"""``icage study --scheduler``: the rows of one machine, whoever dies meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Generator
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from experiments.environment import ROOT
+from experiments.study.run import cluster
+from experiments.study.run.cluster import ClusterError, on_cluster, run_remote
+from experiments.study.run.folder import StudyFolder
+from tests.experiments.study.studies import Studied, left_alone
+
+distributed = pytest.importorskip("distributed")
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Processes of a dask cluster on this machine."""
+
+    address: str
+    scheduler: subprocess.Popen[bytes]
+    workers: list[subprocess.Popen[bytes]]
+
+
+@pytest.fixture
+def started(tmp_path: Path) -> Generator[Callable[..., Cluster]]:
+    """Starts a scheduler and workers of one thread each, without nannies to revive them."""
+    with ExitStack() as stack:
+
+        def start(module: str, *options: str, **environment: str) -> subprocess.Popen[bytes]:
+            quiet = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0")
+            child = subprocess.Popen(
+                [sys.executable, "-m", f"distributed.cli.{module}", *options, *quiet],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                cwd=ROOT,
+                env={**os.environ, **environment},
+            )
+            stack.callback(child.wait, 60)
+            stack.callback(child.kill)
+            return child
+
+        def of(workers: int, **environment: str) -> Cluster:
+            address = f"tcp://127.0.0.1:{free_port()}"
+            listen = ("--host", "127.0.0.1", "--port", address.rpartition(":")[2])
+            scheduler = start("dask_scheduler", *listen, **environment)
+            alone = ("--nthreads", "1", "--no-nanny", "--local-directory", str(tmp_path / "dask"))
+            crew = [start("dask_worker", address, *alone) for _ in range(workers)]
+            with distributed.Client(address, timeout=60, set_as_default=False) as client:
+                client.wait_for_workers(workers, timeout=60)
+            return Cluster(address, scheduler, crew)
+
+        yield of
+
+
+def free_port() -> int:
+    with closing(socket.socket()) as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("studies")
+
+
+@pytest.fixture
+def study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Studied:
+    return Studied(tmp_path / "out", capsys)
+
+
+@pytest.fixture
+def after(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[], Any]], None]:
+    """Has something happen when so many shards are kept."""
+    keep = StudyFolder.keep
+
+    def after(shards: int, happen: Callable[[], Any]) -> None:
+        count = iter(range(1, 1000))
+
+        def kept(self: StudyFolder, *given: Any) -> None:
+            keep(self, *given)
+            if next(count) == shards:
+                happen()
+
+        monkeypatch.setattr(StudyFolder, "keep", kept)
+
+    return after
+
+
+# ---------------------------------------------------------------------------- a real cluster
+
+
+@pytest.mark.slow
+def test_a_worker_is_killed(folder: Path, study: Studied, started: Any, after: Any):
+    """Its shards are run by the other one."""
+    alone = left_alone(folder)  # first: it leaves compiled kernels for the workers
+    there = started(2)
+    killed: list[float] = []
+
+    def kill() -> None:
+        there.workers[0].kill()
+        killed.append(time.monotonic())
+
+    after(4, kill)
+    result = study.run("--scheduler", there.address, "--shard", "3")
+    assert time.monotonic() - killed[0] < 60.0
+    assert (result.code, result.err) == (0, "")
+    assert there.workers[0].wait(60) != 0
+    assert there.workers[1].poll() is None
+    study.check_same(alone)
+
+
+@pytest.mark.slow
+def test_begun_on_a_cluster_and_finished_here(
+    folder: Path, study: Studied, started: Any, after: Any
+):
+    there = started(1)
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    after(4, interrupt)
+    result = study.run("--scheduler", there.address, "--shard", "9")
+    assert (result.code, result.err) == (130, "icage: error: interrupted\n")
+    assert len(study.shards) == 4
+    assert study.resume("--shard", "20").code == 0
+    study.check_same(left_alone(folder))
+
+
+@pytest.mark.slow
+def test_a_lost_scheduler_keeps_what_is_done(
+    folder: Path, study: Studied, started: Any, after: Any
+):
+    there = started(1)
+    after(2, there.scheduler.kill)
+    result = study.run("--scheduler", there.address, "--shard", "5")
+    assert result.code == 2
+    assert result.err.startswith("icage: error: the scheduler was lost; what is done is kept: ")
+    assert result.err.count("\n") == 1
+    assert study.shards
+    assert study.resume().code == 0
+    study.check_same(left_alone(folder))
+
+
+@pytest.mark.slow
+def test_a_shard_that_kills_every_worker(
+    study: Studied, started: Any, monkeypatch: pytest.MonkeyPatch
+):
+    there = started(1, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
+    monkeypatch.setattr(cluster, "run_remote", lambda text, span: os._exit(1))
+    result = study.run("--scheduler", there.address, "--shard", "1000")
+    assert result.code == 2
+    line = "icage: error: workers died while they ran trials 0 to 119, 1 of them; what is done"
+    assert result.err.startswith(line)
+    assert result.err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_workers_with_other_versions_are_refused(folder: Path, study: Studied, started: Any):
+    there, document = started(1), left_alone(folder).document
+    mine = document["versions"]["mujoco"]
+    on_cluster(there.address, document)
+    document["versions"]["mujoco"] = "4.0.7"
+    with pytest.raises(ClusterError, match=rf"worker tcp.* has mujoco {mine} instead of 4\.0\.7"):
+        on_cluster(there.address, document)
+
+
+# ---------------------------------------------------------------------------- none
+
+
+def test_a_worker_that_came_late_is_refused_too(folder: Path):
+    document = left_alone(folder).document
+    document["versions"]["numba"] = "0.1"
+    with pytest.raises(ClusterError, match=r"a worker has numba .* instead of 0\.1"):
+        run_remote(json.dumps(document), (0, 3))
+
+
+def test_a_remote_shard_is_the_same(folder: Path):
+    done = left_alone(folder)
+    table = run_remote(json.dumps(done.document), (7, 11))
+    assert table.equals(done.table.slice(7, 5))
+
+
+@pytest.mark.parametrize(
+    ("address", "words"),
+    [
+        ("tcp://127.0.0.1:{free}", "does not answer: "),
+        ("tcp://no-such-host.invalid:8786", "does not answer: "),
+        ("somewhere", "tcp://HOST:PORT is needed"),
+        ("tcp://[::1", "tcp://HOST:PORT is needed"),
+        ("tcp://127.0.0.1:99999", "tcp://HOST:PORT is needed"),
+    ],
+)
+def test_no_scheduler(study: Studied, address: str, words: str):
+    """One line, soon, before anything is written."""
+    begun = time.monotonic()
+    result = study.run("--scheduler", address.format(free=free_port()))
+    assert words in result.error_line()
+    assert time.monotonic() - begun < 15.0
+    assert not study.path.exists()
+
+
+def test_somebody_else_listens_there(study: Studied, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(cluster, "_SCHEDULER_WAIT", 1)
+    with closing(socket.create_server(("127.0.0.1", 0))) as mute:
+        address = f"tcp://127.0.0.1:{mute.getsockname()[1]}"
+        begun = time.monotonic()
+        assert "does not answer: " in study.run("--scheduler", address).error_line()
+        assert time.monotonic() - begun < 15.0
+
+
+def test_without_dask(study: Studied, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    line = study.run("--scheduler", "tcp://127.0.0.1:1").error_line()
+    assert line == "--scheduler needs dask.distributed; install icage[cluster]"

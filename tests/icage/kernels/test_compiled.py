@@ -1,0 +1,119 @@
+"""The kernel cache goes by the content of all kernels, and plain Python gives the same numbers."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from icage.cells.kernels.search import explore
+from icage.kernels.compiled import TOOLS, compiled, kernel_digest
+
+SCRIPT = """
+from icage.outline import Outline
+from icage.planner import plan
+tee = [(-5.15, 4.65), (-5.15, 1.1), (-1.65, 1.1), (-1.65, -7.15), (1.65, -7.15), (1.65, 1.1),
+       (5.15, 1.1), (5.15, 4.65)]
+cage = plan(Outline(tee), [(-1.65, 1.1), (1.65, 1.1), (0.0, 4.65)])
+print(repr(cage.sigma_0), repr(cage.sigma_first), repr(cage.sigma_max))
+"""
+
+
+def answer(**environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT], check=True, capture_output=True, text=True,
+        cwd=Path(__file__).parents[3], env={**os.environ, **environment},
+    )  # fmt: skip
+    return done.stdout
+
+
+def test_a_change_in_any_kernel_makes_every_cached_one_stale() -> None:
+    cache = explore._cache  # type: ignore[attr-defined]
+    assert cache._cache_file._source_stamp == kernel_digest()
+    assert cache._cache_file._index_name.endswith(f".{TOOLS}.nbi")
+    assert TOOLS in cache._cache_file._data_name(1)
+
+
+def test_stale_machine_code_is_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """numba compares the stamp that we set with the one in its index when it loads."""
+    import numba
+
+    source = tmp_path / "one_for_the_cache.py"
+    source.write_text("def one():\n    return 1\n")
+    spec = importlib.util.spec_from_file_location(source.stem, source)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, source.stem, module)  # numba pickles it by its name
+    spec.loader.exec_module(module)
+
+    def hits(stamp: str) -> int:
+        dispatcher = numba.njit(cache=True)(module.one)
+        dispatcher._cache._cache_file._source_stamp = stamp
+        assert dispatcher() == 1
+        return sum(dispatcher.stats.cache_hits.values())
+
+    assert [hits("first"), hits("first"), hits("second")] == [0, 1, 0]
+
+
+ONE_KERNEL = """
+import sys
+import llvmlite, numba  # numba first looks which llvmlite it has
+llvmlite.__version__ = sys.argv[1]
+from icage.kernels.compiled import compiled
+from icage.kernels.compiling import when_compiling
+from one_for_the_cache import one
+when_compiling(lambda: print("compiling"))
+one = compiled(one)
+print(one(1), one(1.0))
+"""
+
+
+@pytest.mark.slow
+def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) -> None:
+    """And whoever asked is told of a compilation, once, and only where nothing is cached."""
+    (tmp_path / "one_for_the_cache.py").write_text("def one(x):\n    return x + 1\n")
+    (tmp_path / "cache").mkdir()
+    root = str(Path(__file__).parents[3])
+    path = {
+        "PYTHONPATH": os.pathsep.join([root, str(tmp_path)]),
+        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+    }
+
+    def told(version: str) -> bool:
+        done = subprocess.run(
+            [sys.executable, "-c", ONE_KERNEL, version], check=True, capture_output=True, text=True,
+            cwd=tmp_path, env={**os.environ, **path},
+        )  # fmt: skip
+        words = done.stdout.split()
+        assert words[-2:] == ["2", "2.0"]
+        assert words[:-2] in ([], ["compiling"])
+        return words[:-2] != []
+
+    assert [told(version) for version in ("A", "A", "B", "A", "B")] == [1, 0, 1, 0, 0]
+    names = [file.name for file in (tmp_path / "cache").glob("*/*.nbi")]
+    assert sorted(name[-6:] for name in names) == ["eA.nbi", "eB.nbi"]
+
+
+def test_no_place_for_a_cache_is_no_error() -> None:
+    """numba finds none for a function that has no file."""
+    scope: dict[str, Any] = {}
+    exec("def one(x):\n    return x + 1\n", scope)
+    assert compiled(scope["one"])(1) == 2
+
+
+@pytest.mark.slow
+def test_compiled_and_plain_paths_agree() -> None:
+    assert answer() == answer(NUMBA_DISABLE_JIT="1")
+
+
+def test_the_t_shape_of_the_theory() -> None:
+    """sigma_0 = 3.3, sigma_max about 1.96 sigma_0."""
+    sigma_0, _, sigma_max = (float(word) for word in answer().split())
+    assert sigma_0 == pytest.approx(3.3, rel=1e-12)
+    assert sigma_max / sigma_0 == pytest.approx(1.96, abs=0.01)
