@@ -1,7 +1,77 @@
 """icage: how far may a three-finger hand open before the object inside it can escape?
 
-Import from the modules (``from icage.outline import Outline``): the package root stays empty so
-that a command that only prints its help loads neither shapely nor numba.
+>>> import icage
+>>> case = icage.load("pliers")
+>>> cage = icage.plan(case)
+>>> cage
+<Cage pliers/1_best: sigma 50.4419 < 96.8576 <= 96.8656 mm, 2 grasps>
+
+Everything a user needs is here; it is loaded when it is first named, so that a command that only
+prints its help loads neither shapely nor numba. Inside the project, import from the modules.
 """
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from icage.cage import Cage, GraspMinimum, Puncture
+    from icage.case import Case
+    from icage.errors import IcageError, InputError
+    from icage.formats.cage_json import read_cage
+    from icage.formats.load import load
+    from icage.grasp import Grasp
+    from icage.grasps.regrasp import regrasp
+    from icage.hand import HandShape, Placement
+    from icage.outline import Outline
+    from icage.placement_class import PlacementClass
+    from icage.planner import plan
+
 __version__ = "0.1.0"
+
+_WHERE = {
+    "Cage": "icage.cage",
+    "Case": "icage.case",
+    "Grasp": "icage.grasp",
+    "GraspMinimum": "icage.cage",
+    "HandShape": "icage.hand",
+    "IcageError": "icage.errors",
+    "InputError": "icage.errors",
+    "Outline": "icage.outline",
+    "Placement": "icage.hand",
+    "PlacementClass": "icage.placement_class",
+    "Puncture": "icage.cage",
+    "load": "icage.formats.load",
+    "plan": "icage.planner",
+    "read_cage": "icage.formats.cage_json",
+    "regrasp": "icage.grasps.regrasp",
+}
+
+__all__ = [
+    "Cage",
+    "Case",
+    "Grasp",
+    "GraspMinimum",
+    "HandShape",
+    "IcageError",
+    "InputError",
+    "Outline",
+    "Placement",
+    "PlacementClass",
+    "Puncture",
+    "load",
+    "plan",
+    "read_cage",
+    "regrasp",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"icage has no {name!r}; it has {', '.join(__all__)}")
+    return getattr(import_module(_WHERE[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

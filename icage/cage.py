@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, TypeAlias, overload
 
 import numpy as np
+import shapely
+from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray
-from icage.cells.solver import Search, Tree
+from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from icage.values import Value
+
+if TYPE_CHECKING:
+    from icage.cells.membership import Answers, PlacementAnswer
+    from icage.cells.work import CageWork
 
 Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
 
 
-@dataclass(frozen=True, slots=True)
-class GraspMinimum:
+@dataclass(frozen=True, slots=True, eq=False)
+class GraspMinimum(Value):
     """A local minimum of sigma: closing can end here. Lengths in the object's unit.
 
     ``contacts`` (3, 2) are the finger centres; ``free_fingers`` (of 1, 2, 3) touch nothing;
@@ -38,8 +46,8 @@ class GraspMinimum:
         return Placement.from_contacts(self.contacts)
 
 
-@dataclass(frozen=True, slots=True)
-class Puncture:
+@dataclass(frozen=True, slots=True, eq=False)
+class Puncture(Value):
     """A level at which the target's component meets another one. [Bunis2018, Sec. III-B]"""
 
     sigma: float
@@ -47,20 +55,6 @@ class Puncture:
     joins: tuple[int, ...]
     contacts: FloatArray
     free_fingers: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class CageWork:
-    """What the search left behind, for queries and regions: internal to the planner."""
-
-    search: Search
-    tree: Tree
-    minimum_node: tuple[int, ...]
-    """Node of each grasp, by id."""
-    sagitta: float = 0.0
-    """How far the polygon searched may lie inside the true offset, [unit] (0 for points)."""
-    remembered: dict[str, object] = field(default_factory=dict[str, object])
-    """Point location and escape levels, built when first asked for (see membership)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +85,8 @@ class SearchLog:
     tunnel_edges_used: int
 
 
-@dataclass(frozen=True, slots=True)
-class Cage:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Cage(Value):
     """How far a hand on a target grasp may open. Levels in the object's unit.
 
     ``sigma_first`` is the first level at which closing may end elsewhere, ``sigma_max`` the one at
@@ -128,11 +122,130 @@ class Cage:
     """The course of the search, where the method keeps one (contact space)."""
     work: CageWork | None = field(default=None, repr=False, compare=False)
     """None for ``not_a_cage`` and for methods that cannot answer queries (contact space)."""
+    name: str = ""
+    """Of the case that was planned; empty for a bare outline."""
+    unit: str = ""
+    """Of all lengths; empty if nobody said."""
 
     @property
     def target_placement(self) -> Placement:
         """The target as a placement of the hand in the object's frame."""
         return Placement.from_contacts(self.contacts)
+
+    @overload
+    def query(self, placements: Placement) -> PlacementAnswer: ...
+
+    @overload
+    def query(self, placements: ArrayLike) -> PlacementAnswer | Answers: ...
+
+    def query(self, placements: Placement | ArrayLike) -> PlacementAnswer | Answers:
+        """Is the object caged by a hand that stands here? See ``icage.cells.membership``.
+
+        Parameters
+        ----------
+        placements:
+            One placement (a ``Placement`` or four numbers x, y, theta [rad], sigma) or rows (n, 4)
+            of them, in the object's frame and unit.
+
+        Returns
+        -------
+        PlacementAnswer for one placement, Answers for rows.
+
+        Raises
+        ------
+        PlacementError:
+            Numbers that are not finite, a negative sigma, another shape.
+        MethodError:
+            The cage was planned by the contact space: plan it by the cells.
+
+        Examples
+        --------
+        >>> from icage.planner import plan
+        >>> cage = plan(
+        ...     [[0, 0], [1, 0], [0.5, 0.75**0.5]],
+        ...     [[0.5, 0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]],
+        ... )
+        >>> cage.query(cage.target_placement).verdict
+        <PlacementClass.TARGET: 'target'>
+        >>> cage.query([5.0, 5.0, 0.0, 0.5]).verdict == "escapes"
+        True
+        """
+        from icage.cells.membership import query
+
+        if isinstance(placements, Placement):
+            return query(self, placements.as_array()[None, :])[0]
+        rows = np.asarray(placements, dtype=np.float64)
+        return query(self, rows[None, :])[0] if rows.shape == (4,) else query(self, rows)
+
+    def regions(
+        self,
+        level: float | Literal["sigma_max", "sigma_first"] = "sigma_max",
+        *,
+        bound: Literal["inner", "outer"] = "inner",
+        gap: float = 1e-3,
+    ) -> tuple[shapely.MultiPolygon, ...]:
+        """Where each finger may be while the hand stays below a level; [0] is finger 1.
+
+        Parameters
+        ----------
+        level:
+            "sigma_max" (all of the cage), "sigma_first" (the guaranteed set) or a size [unit].
+        bound:
+            "inner": certainly in the region, the safe side, the one to draw and to aim at. "outer":
+            nothing of the region lies outside it.
+        gap:
+            [1] Wanted relative difference of area between the two bounds.
+
+        Raises
+        ------
+        InputError:
+            The level is not between sigma_0 and sigma_max, or the gap not in (0, 1).
+        MethodError:
+            The cage was planned by the contact space: plan it by the cells.
+        """
+        from icage.cells.regions import caging_regions
+
+        if bound not in ("inner", "outer"):
+            raise InputError(f"bound is {bound!r}; 'inner' or 'outer' is needed")
+        found = caging_regions(self, self._level(level), gap)
+        return tuple(region.geometry for region in found if region.bound == bound)
+
+    def _level(self, level: float | str) -> float | None:
+        if isinstance(level, str):
+            if level not in ("sigma_max", "sigma_first"):
+                raise InputError(
+                    f"level is {level!r}; 'sigma_max', 'sigma_first' or a number is needed"
+                )
+            return self.sigma_first if level == "sigma_first" else self.sigma_max
+        return level
+
+    def save(self, file: str | Path) -> None:
+        """Write the cage as ``icage-plan/1``, whole or not at all; ``icage.read_cage`` reads it.
+
+        Raises
+        ------
+        OutputError:
+            The file cannot be written.
+        """
+        from icage.formats.cage_json import save_cage
+
+        save_cage(self, Path(file))
+
+    def _repr_svg_(self) -> str:
+        from icage.formats.picture import cage_picture
+
+        return cage_picture(self)
+
+    def __repr__(self) -> str:
+        name = f" {self.name}" if self.name else ""
+        unit = f" {self.unit}" if self.unit else ""
+        if self.verdict == "not_a_cage":
+            return f"<Cage{name}: not a cage at sigma {self.sigma_0:.6g}{unit}>"
+        first = "" if self.sigma_first is None else f" < {self.sigma_first:.6g}"
+        top = "" if self.sigma_max is None else f" <= {self.sigma_max:.6g}"
+        never = ", never escapes" if self.sigma_max is None else ""
+        count = f"{len(self.grasps)} grasp{'' if len(self.grasps) == 1 else 's'}"
+        return f"<Cage{name}: sigma {self.sigma_0:.6g}{first}{top}{unit}{never}, {count}>"
 
 
 def not_a_cage(

@@ -35,6 +35,10 @@ class FormatError(InputError):
     """A drawing cannot be read."""
 
 
+class MethodError(InputError):
+    """The method that planned a cage cannot answer; the error names the one that can."""
+
+
 class OutputError(InputError):
     """The place a user named for an answer cannot take it."""
 

@@ -35,7 +35,7 @@ class Look(Protocol):
         ...
 
 
-class Engine(Protocol):
+class Method(Protocol):
     """A method of computing cages of point fingers."""
 
     @property

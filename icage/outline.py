@@ -13,6 +13,7 @@ from shapely.validation import explain_validity
 
 from icage.arrays import FloatArray, read_only
 from icage.errors import OutlineError
+from icage.values import Value
 
 MAX_VERTICES = 2000
 """Largest outline accepted: the planner's work grows about like n^2.4, minutes beyond this."""
@@ -24,8 +25,8 @@ _THINNEST = 1e-12
 """[diameter^2] Area below which a polygon counts as having none."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Outline(Value):
     """A simple polygon with an area, its vertices counterclockwise.
 
     Repeated vertices are dropped and a clockwise ring is turned round; apart from that the
@@ -78,6 +79,10 @@ class Outline:
 
     def __len__(self) -> int:
         return len(self.vertices)
+
+    def __repr__(self) -> str:
+        width, height = np.ptp(self.vertices, axis=0)
+        return f"<Outline: {len(self)} vertices, {width:.6g} x {height:.6g}>"
 
     @property
     def area(self) -> float:

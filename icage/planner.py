@@ -1,50 +1,113 @@
-"""plan(): from an outline and a target grasp to the cage. The front door of the planner."""
+"""plan(): from an object and a target grasp to the cage. It alone checks what it is given."""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
+from typing import Final, Literal, TypeAlias
 
-from icage.arrays import FloatArray
+from numpy.typing import ArrayLike
+
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.method import CELLS
 from icage.discs.brackets import plan_discs
-from icage.hand import HandShape
-from icage.method import Engine
+from icage.errors import InputError
+from icage.grasp import Grasp
+from icage.hand import HandShape, Placement
+from icage.method import Method
 from icage.outline import Outline
+
+MethodName: TypeAlias = Literal["cells", "contact-space"]
+
+METHODS: Final[tuple[MethodName, ...]] = ("cells", "contact-space")
+"""The methods by the names that the command line gives them."""
 
 
 def plan(
-    outline: Outline, contacts: FloatArray, finger_radius: float = 0.0, engine: Engine = CELLS
+    case: Case | Outline | ArrayLike,
+    grasp: Grasp | ArrayLike | None = None,
+    finger_radius: float | None = None,
+    method: MethodName | Method = CELLS,
 ) -> Cage:
-    """How far the hand on these contacts may open before the object can escape.
+    """How far the hand on a target grasp may open before the object can escape.
 
     Parameters
     ----------
-    outline:
-        The object.
-    contacts:
-        (3, 2), finger centres of the target grasp, counterclockwise, in the outline's unit.
+    case:
+        A case, or the object alone: an ``Outline`` or its vertices (n, 2).
+    grasp:
+        The target: a ``Grasp``, or finger centres (3, 2), counterclockwise, in the outline's unit.
+        None for the case's own.
     finger_radius:
-        Radius of the disc fingers in the same unit; 0 for point fingers.
-    engine:
-        The method: cells (default) or ``icage.contact_space.CONTACT_SPACE``, the paper's.
+        [unit] Radius of the disc fingers, 0 for point fingers; None for the case's own (0 for a
+        bare outline).
+    method:
+        "cells" (default, exact and fast) or "contact-space", the paper's I-CAGE; or an object that
+        follows ``icage.method.Method``.
 
     Raises
     ------
+    OutlineError:
+        The vertices are no simple polygon with an area.
+    GraspError:
+        There is no grasp, the contacts are not three points on the outline (at the distance of the
+        radius from it), the radius is no finite number of 0 or more, or a disc does not fit.
     HandError:
         The contacts are clockwise, collinear or coincident.
-    GraspError:
-        With discs: the contacts cannot be reached by fingers of this radius.
+    InputError:
+        There is no such method.
 
     Examples
     --------
-    >>> triangle = Outline([[0, 0], [1, 0], [0.5, 0.75**0.5]])
+    >>> triangle = [[0, 0], [1, 0], [0.5, 0.75**0.5]]
     >>> cage = plan(triangle, [[0.5, 0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]])
-    >>> cage.verdict, round(cage.sigma_0, 9), round(cage.sigma_max, 9)
-    ('cage', 0.5, 0.866025404)
+    >>> cage
+    <Cage: sigma 0.5 < 0.866025 <= 0.866025 m, 1 grasp>
     """
-    points = np.asarray(contacts, dtype=np.float64)
-    hand = HandShape.from_contacts(points)
-    if finger_radius > 0.0:
-        return plan_discs(outline, hand, points, finger_radius, engine)
-    return engine.cage(outline, hand, points, outline, 0.0)
+    asked = _asked(case, grasp, finger_radius)
+    chosen = _method(method)
+    contacts = asked.contacts
+    hand = HandShape.from_contacts(contacts)
+    if asked.finger_radius > 0.0:
+        cage = plan_discs(asked.outline, hand, contacts, asked.finger_radius, chosen)
+    else:
+        cage = chosen.cage(asked.outline, hand, contacts, asked.outline, 0.0)
+    if isinstance(case, Case):
+        return replace(cage, name=case.name, unit=case.unit)
+    return cage
+
+
+_UNNAMED: Final = "object"
+
+
+def _asked(
+    case: Case | Outline | ArrayLike, grasp: Grasp | ArrayLike | None, finger_radius: float | None
+) -> Case:
+    """What was asked for as one checked value."""
+    if isinstance(grasp, Placement):
+        raise InputError(
+            "a Placement says where a hand stands and not its shape; plan() needs three finger "
+            "centres (3, 2), such as HandShape.fingers(placement.as_array())"
+        )
+    contacts = grasp.contacts if isinstance(grasp, Grasp) else grasp
+    if isinstance(case, Case):
+        if contacts is None and finger_radius is None:
+            return case
+        radius = case.finger_radius if finger_radius is None else finger_radius
+        target = case.contacts if contacts is None else contacts
+        return replace(case, target=target, finger_radius=radius)
+    outline = case if isinstance(case, Outline) else Outline(case)
+    radius = 0.0 if finger_radius is None else finger_radius
+    return Case(_UNNAMED, "m", outline, radius, contacts)
+
+
+def _method(method: MethodName | Method) -> Method:
+    if not isinstance(method, str):
+        return method
+    if method == "cells":
+        return CELLS
+    if method == "contact-space":
+        from icage.contact_space.method import CONTACT_SPACE  # only now: more kernels to load
+
+        return CONTACT_SPACE
+    raise InputError(f"method is {method!r}; one of {', '.join(METHODS)} is needed")

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 from icage.agreement import disagreements
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.method import ContactSpace
-from icage.formats.case_json import Case
 from icage.planner import plan
 
 

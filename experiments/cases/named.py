@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiments.io.options import reason
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case, Object, parse_unit, read_case, read_object
+from icage.formats.case_json import parse_unit, read_case, read_object
 from icage.formats.svg.outline import read_svg
 from models import case_path, object_names, outline_path
 
@@ -23,7 +24,7 @@ def find_case(text: str) -> Case:
     return read_case(case_file(text))
 
 
-def find_object(text: str, width: float | None = None, unit: str | None = None) -> Object:
+def find_object(text: str, width: float | None = None, unit: str | None = None) -> Case:
     """The object of a drawing, of a case file (with or without a grasp), or a shipped one.
 
     Parameters
@@ -42,7 +43,7 @@ def find_object(text: str, width: float | None = None, unit: str | None = None) 
     if path.suffix.lower() == ".svg":
         measure = parse_unit("m" if unit is None else unit)
         outline = read_svg(path, width, unit=measure)
-        return Object(path.stem, measure, outline, 0.0, (path,))
+        return Case(path.stem, measure, outline, 0.0, None, (path,))
     if width is not None or unit is not None:
         raise InputError(f"--width and --unit are for drawings (*.svg); {path} has its own")
     return read_object(path)

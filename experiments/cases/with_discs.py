@@ -10,7 +10,7 @@ target, another grasp of the same hand is taken instead, and said so.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -18,8 +18,8 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case
 from icage.geometry.least_opening import NoOpeningError, least_opening
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
@@ -134,7 +134,7 @@ def _another(case: Case, radii: Sequence[float]) -> PhysicalCase | None:
     others = grasps_of_hand(case.outline, hand)[:MOST_OTHERS]
     for contacts, radius in product(others, radii):
         try:
-            done = with_discs(replace(case, contacts=contacts), radius * case.outline.diameter)
+            done = with_discs(case.with_grasp(contacts), radius * case.outline.diameter)
             cage = _cage(done)
         except InputError:
             continue

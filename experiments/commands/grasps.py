@@ -20,7 +20,7 @@ from experiments.io.options import seed as seed_option
 if TYPE_CHECKING:
     from icage.arrays import FloatArray
     from icage.cage import Cage
-    from icage.formats.case_json import Object
+    from icage.case import Case
 
 _WORKERS = 2
 
@@ -104,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatArray]:
+def _best(thing: Case, radius: float, args: argparse.Namespace) -> list[FloatArray]:
     import os
     from math import radians
 
@@ -132,7 +132,7 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
     return [candidate.contacts for candidate in found]
 
 
-def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatArray]:
+def _of_one_hand(thing: Case, radius: float, phi: list[float]) -> list[FloatArray]:
     from icage.discs.offsets import offsets
     from icage.grasps.of_one_hand import grasps_of_hand
     from icage.hand import HandShape
@@ -143,7 +143,7 @@ def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatAr
 
 
 def _planned(
-    thing: Object, radius: float, contacts: list[FloatArray], aim: str, top: int
+    thing: Case, radius: float, contacts: list[FloatArray], aim: str, top: int
 ) -> list[Cage]:
     """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
     from icage.discs.true_curve import refine
@@ -187,7 +187,7 @@ def _entry(cage: Cage, aim: str) -> dict[str, Any]:
     }
 
 
-def _print(thing: Object, radius: float, cages: list[Cage], aim: str) -> None:
+def _print(thing: Case, radius: float, cages: list[Cage], aim: str) -> None:
     print(
         f"{thing.name}: {len(thing.outline)} vertices, finger radius {radius:g} {thing.unit}, "
         f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"

@@ -17,8 +17,8 @@ import numpy as np
 from experiments.cases.with_discs import PhysicalCase, physical_case
 from experiments.escape.setup import Arena
 from icage.cage import Cage
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case
 from icage.planner import plan
 from sim.attack.held import Attacks
 from sim.attack.measured_sigma_max import AttackAt, Measured, measure

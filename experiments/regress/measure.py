@@ -16,9 +16,10 @@ from experiments.shake.run import ShakeError, Shaken, shake_case
 from icage.agreement import disagreements
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.case import Case
 from icage.contact_space.method import ContactSpace
-from icage.formats.case_json import Case, read_case
-from icage.method import Engine
+from icage.formats.case_json import read_case
+from icage.method import Method
 from icage.planner import plan
 from sim.attack.held import Attacks
 from sim.attack.random import RandomPull
@@ -103,7 +104,7 @@ def measure(entry: Entry, effort: Effort, seed: int = SEED) -> Row:
     return in_physics(row, physical)
 
 
-def plan_both(case: Case, second: Engine | None = None, cells: Cage | None = None) -> Planned:
+def plan_both(case: Case, second: Method | None = None, cells: Cage | None = None) -> Planned:
     """A case by the cells and by the paper's method, or by another in its place.
 
     ``cells`` is the cells' plan where it is known.

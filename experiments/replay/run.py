@@ -15,9 +15,9 @@ import numpy as np
 
 from icage.agreement import disagreements
 from icage.cage import Cage, Puncture
+from icage.case import Case
 from icage.contact_space.method import CONTACT_SPACE
 from icage.errors import InputError
-from icage.formats.case_json import Case
 from icage.planner import plan
 from icage.sampling import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
 from sim.closing.batch import close_many

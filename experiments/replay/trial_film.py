@@ -8,7 +8,7 @@ from experiments.io.progress import stage_bar
 from experiments.replay.recorded import Rerun, recorded_cage, recorded_regions
 from experiments.replay.run import Recorded, Replay, Run
 from experiments.replay.video import film
-from icage.formats.case_json import Case
+from icage.case import Case
 from icage.formats.whole_files import whole_file
 from icage.sampling import Starts
 

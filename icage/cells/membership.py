@@ -7,24 +7,27 @@ Both come from the same best-first search; no ray shooting. Our own.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
 from icage.arrays import BoolArray, FloatArray, IntArray
-from icage.cage import Cage, CageWork
+from icage.cage import Cage
 from icage.cells.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.cells.kernels.tree import find_at
 from icage.cells.solver import CELL_LIMIT, Terrain, inside_cells
-from icage.errors import InputError, PlacementError
+from icage.cells.work import CageWork, work_of
+from icage.errors import PlacementError
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
+from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
 
-VERDICTS: Final = ("target", "caged", "other", "escapes", "collision")
+VERDICTS: Final = tuple(one.value for one in PlacementClass)
 """Meaning of the verdict codes 0..4. [contract]"""
 
-TARGET, CAGED, OTHER, ESCAPES, COLLIDES = range(5)
+TARGET, CAGED, OTHER, ESCAPES, COLLIDES = PlacementCode
 
 _GRID = 96
 
@@ -33,6 +36,36 @@ _HELD = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
+class PlacementAnswer:
+    """What the query says of one placement. Lengths in the object's unit.
+
+    Attributes
+    ----------
+    verdict:
+        Which class the placement is of.
+    sigma:
+        Its size.
+    margin:
+        By how much the hand may still open before the object can escape: an opening, no room for
+        misplacement. None if it never escapes, 0 for ``escapes`` and ``collision``.
+    target_margin:
+        By how much it may open while closing still ends in the target only; None but for the
+        class ``target``, and where no such level exists.
+    grasps:
+        Ids of the plan's grasps that the placement's component holds.
+    in_cage:
+        Whether it joins the target below sigma_max.
+    """
+
+    verdict: PlacementClass
+    sigma: float
+    margin: float | None
+    target_margin: float | None
+    grasps: tuple[int, ...]
+    in_cage: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Answers:
     """What the query says of n placements. Lengths in the object's unit.
 
@@ -52,6 +85,18 @@ class Answers:
 
     def __len__(self) -> int:
         return len(self.verdict)
+
+    def __getitem__(self, row: int) -> PlacementAnswer:
+        """The answer about one placement, counted from 0."""
+        margin, target_margin = float(self.margin[row]), float(self.target_margin[row])
+        return PlacementAnswer(
+            PlacementCode(int(self.verdict[row])).placement_class,
+            float(self.sigma[row]),
+            None if math.isnan(margin) else margin,
+            None if math.isnan(target_margin) else target_margin,
+            self.grasps_of(row % len(self)),
+            bool(self.in_cage[row]),
+        )
 
     def grasps_of(self, row: int) -> tuple[int, ...]:
         """Ids of the plan's grasps in the component of placement ``row`` at its own sigma."""
@@ -125,16 +170,15 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     ------
     PlacementError:
         Not (n, 4), not finite, or a negative sigma; names the row (from 0).
-    InputError:
-        The cage comes from a method that keeps no cells.
+    MethodError:
+        The cage was planned by the contact space.
 
     Notes
     -----
     About 4 us a placement at 100 vertices once the cells outside the cage have been met.
     """
     rows = checked_placements(placements)
-    if cage.work is None and cage.verdict != "not_a_cage":
-        raise InputError("queries need a cage planned by the cells' method")
+    work = work_of(cage)
     sigma = rows[:, 3].copy()
     fingers = cage.hand.fingers(rows)
     size = cage.outline.diameter
@@ -143,7 +187,6 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     target_margin = np.full(len(rows), np.nan)
     in_cage = np.zeros(len(rows), dtype=np.bool_)
     nodes = np.full(len(rows), -1, dtype=np.int64)
-    work = cage.work
     found = (
         np.full((len(rows), 3), -1) if work is None else _locator(work).cells(fingers, _HELD * size)
     )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from icage.arrays import FloatArray
-from icage.cage import Cage, CageWork, not_a_cage
+from icage.cage import Cage, not_a_cage
 from icage.cells.largest_sigma import largest_sigma_in
 from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
 from icage.cells.solver import Search, Terrain, Tree, merge_tree, search
 from icage.cells.target import Target, contacts_as_configuration, find_target
 from icage.cells.why_not import plateau_reason, why_not
+from icage.cells.work import CageWork
 from icage.errors import GeometryError
 from icage.geometry.statics import ISOLATED, no_depth_reason
 from icage.hand import HandShape
@@ -45,7 +46,7 @@ class CellsLook:
 
 
 class Cells:
-    """The engine behind ``plan``. See ``icage.method.Engine``."""
+    """The engine behind ``plan``. See ``icage.method.Method``."""
 
     @property
     def complete(self) -> bool:

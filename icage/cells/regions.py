@@ -16,9 +16,10 @@ import shapely
 from numpy.typing import NDArray
 
 from icage.arrays import FloatArray, IntArray
-from icage.cage import Cage, CageWork
+from icage.cage import Cage
 from icage.cells.kernels.region import all_sandwiches, least_points
 from icage.cells.solver import Terrain
+from icage.cells.work import CageWork, work_of
 from icage.errors import InputError
 from icage.tolerance import REGION_LEVEL
 
@@ -72,7 +73,7 @@ def caging_regions(
     InputError:
         The level is not between sigma_0 and sigma_max, or the gap not in (0, 1).
     """
-    work = cage.work
+    work = work_of(cage)
     if work is None:
         return ()
     chosen, below = _levels(cage, work, level, gap)
@@ -92,7 +93,7 @@ def outer_bounds(
 
     They hold the regions as surely as those of ``caging_regions``. Raises what it raises.
     """
-    work = cage.work
+    work = work_of(cage)
     if work is None:
         return ()
     _, below = _levels(cage, work, level, gap)

@@ -21,7 +21,7 @@ from icage.discs.offsets import Offsets, check_disc_contacts, directions_on_arcs
 from icage.discs.true_curve import refine
 from icage.errors import GeometryError
 from icage.hand import HandShape
-from icage.method import Engine, Look
+from icage.method import Look, Method
 from icage.outline import Outline
 from icage.tolerance import (
     LEVEL,
@@ -52,7 +52,7 @@ class ArcLook:
 
 
 def plan_discs(
-    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, engine: Engine
+    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, engine: Method
 ) -> Cage:
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     check_disc_contacts(outline, radius, contacts)
@@ -90,7 +90,7 @@ def _true_target(
 
 
 def _looks(
-    outline: Outline, hand: HandShape, true: FloatArray, radius: float, engine: Engine
+    outline: Outline, hand: HandShape, true: FloatArray, radius: float, engine: Method
 ) -> tuple[list[ArcLook], int]:
     """Inner and outer polygons, refined until sigma_max is bracketed."""
     through = directions_on_arcs(outline, radius, true)
@@ -118,7 +118,7 @@ def _narrow(looks: list[ArcLook]) -> bool:
 
 def _look(
     grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float,
-    engine: Engine,
+    engine: Method,
 ) -> ArcLook | None:  # fmt: skip
     """The search on one polygon; ``arc`` is the radius of an arc that carries a contact, or 0."""
     polygon = grown.inner if inner else grown.outer

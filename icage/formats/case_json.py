@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
-from icage.arrays import FloatArray, read_only
+from icage.case import Case
 from icage.errors import CaseError, FormatError, InputError
-from icage.formats.case_contacts import check_contacts
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
-from icage.formats.svg.outline import Unit, read_svg
+from icage.formats.svg.outline import read_svg
 from icage.outline import MAX_VERTICES, Outline
+from icage.units import UNITS, Unit
 
 FORMAT: Final = "icage-case/1"
 
@@ -25,41 +22,6 @@ MAX_BYTES: Final = 10_000_000
 
 MAX_NAME: Final = 100
 """Characters of a case's name."""
-
-UNITS: Final = ("m", "mm", "cm")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Object:
-    """An outline with its name and unit, the radius of the fingers meant for it, and the files
-    all this was read from.
-    """
-
-    name: str
-    unit: Unit
-    outline: Outline
-    finger_radius: float
-    sources: tuple[Path, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Case:
-    """An object and a target grasp: finger centres (3, 2), fingers 1, 2, 3, counterclockwise.
-
-    ``sources`` are the files it was read from: the case file and, if it names one, the drawing.
-    """
-
-    name: str
-    unit: Unit
-    outline: Outline
-    finger_radius: float
-    contacts: FloatArray
-    sources: tuple[Path, ...] = ()
-
-    def __post_init__(self) -> None:
-        contacts = np.array(self.contacts, dtype=np.float64)
-        check_contacts(self.outline, contacts, self.finger_radius, self.unit)
-        object.__setattr__(self, "contacts", read_only(contacts))
 
 
 def read_case(path: Path) -> Case:
@@ -71,7 +33,7 @@ def read_case(path: Path) -> Case:
         Whatever is wrong with the file, in one line that begins with its path.
     """
     with _told_with(str(path)):
-        return parse_case(_read_json(path), path.parent, (path,))
+        return parse_case(read_json(path), path.parent, (path,))
 
 
 def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = ()) -> Case:
@@ -84,18 +46,17 @@ def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = ()) -> Ca
     grasp = an_object(required(case, "grasp", "the case"), "grasp")
     contacts = points(required(grasp, "contacts", "grasp"), "grasp.contacts", least=3, most=3)
     with _told_with("grasp.contacts"):
-        return Case(
-            found.name, found.unit, found.outline, found.finger_radius, contacts, found.sources
-        )
+        return found.with_grasp(contacts)
 
 
-def read_object(path: Path) -> Object:
-    """The object in a case file; its grasp, if it has one, is not looked at."""
+def read_object(path: Path) -> Case:
+    """The object in a case file, as a case without a grasp: one that it has is not looked at."""
     with _told_with(str(path)):
-        return parse_object(an_object(_read_json(path), "the case"), path.parent, (path,))
+        return parse_object(an_object(read_json(path), "the case"), path.parent, (path,))
 
 
-def _read_json(path: Path) -> object:
+def read_json(path: Path) -> object:
+    """The JSON of a case file, not looked at yet."""
     content = read_bytes(path, MAX_BYTES, "a case file")
     if content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         raise CaseError(
@@ -105,7 +66,7 @@ def _read_json(path: Path) -> object:
     return parse_json(content, "the file")
 
 
-def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] = ()) -> Object:
+def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] = ()) -> Case:
     """Everything of a case but the grasp."""
     if required(case, "format", "the case") != FORMAT:
         raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed")
@@ -121,7 +82,7 @@ def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] =
     finger_radius = a_number(case.get("finger_radius", 0.0), "finger_radius")
     if finger_radius < 0.0:
         raise CaseError(f"finger_radius is {finger_radius:g}; 0 or more is needed")
-    return Object(name, unit, outline, finger_radius, sources + drawings)
+    return Case(name, unit, outline, finger_radius, None, sources + drawings)
 
 
 def parse_unit(value: object) -> Unit:

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from icage.cage import Cage
-from icage.formats.case_json import Case, read_case
+from icage.case import Case
+from icage.formats.case_json import read_case
 from icage.planner import plan
 from models import CASES
 from tests.sim.grasps import t_shape

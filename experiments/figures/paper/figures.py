@@ -11,8 +11,8 @@ import matplotlib
 from experiments.figures.paper import FIGURES
 from experiments.figures.paper.page import SETTINGS, save
 from experiments.figures.paper.study import Study
+from icage.case import Case
 from icage.errors import OutputError
-from icage.formats.case_json import Case
 
 
 def write_figures(

@@ -9,13 +9,13 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.exploration import Exploration, Plane
 from icage.contact_space.method import ContactLook, ContactSpace
 from icage.discs.offsets import directions_on_arcs, offsets
 from icage.errors import InputError
-from icage.formats.case_json import Case
 from icage.geometry.statics import contacts_reason
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape

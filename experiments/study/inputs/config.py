@@ -13,8 +13,8 @@ from experiments.study.inputs.distributions import LARGEST, Distribution
 from experiments.study.inputs.fields import HELP
 from experiments.study.inputs.fits import check_fits
 from experiments.study.inputs.variables import VARIABLES, read_variable
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case
 
 STARTS: Final = ("guaranteed", "cage", "nominal")
 SAMPLING: Final = ("random", "sobol", "saltelli")

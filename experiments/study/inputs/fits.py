@@ -11,8 +11,8 @@ import numpy as np
 import shapely
 
 from experiments.study.inputs.distributions import Distribution
+from icage.case import Case
 from icage.errors import HandError, InputError
-from icage.formats.case_json import Case
 from icage.hand import HandShape
 
 THINNEST: Final = 1e-4

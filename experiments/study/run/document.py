@@ -12,9 +12,9 @@ from experiments.io.versions import versions
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.distributions import Distribution
 from experiments.study.run.shard import Study
+from icage.case import Case
 from icage.cells.membership import VERDICTS, query
 from icage.errors import InputError
-from icage.formats.case_json import Case
 from icage.outline import Outline
 from icage.planner import plan
 

@@ -28,7 +28,8 @@ from experiments.study.run.folder import (
 )
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, on_threads, run_study
-from icage.formats.case_json import Case, read_case
+from icage.case import Case
+from icage.formats.case_json import read_case
 from icage.formats.whole_files import whole_file
 from models import case_paths, object_names
 

@@ -18,8 +18,8 @@ from experiments.study.inputs.placements import Intended, collides, moved
 from experiments.study.inputs.variants import Key, Variant, Variants
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.membership import COLLIDES, Answers, query
-from icage.formats.case_json import Case
 from icage.tolerance import COLLISION
 from sim.closing.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
 from sim.closing.outcome import ClosingOutcomes

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 import shapely
@@ -24,9 +24,7 @@ from icage.formats.svg.shapes import Shape, drawn_shapes
 from icage.formats.svg.simplify import simplified
 from icage.formats.svg.tree import MAX_BYTES, drawable
 from icage.outline import LARGEST_COORDINATE, Outline
-
-Unit = Literal["m", "mm", "cm"]
-"""What lengths of a case may be in."""
+from icage.units import Unit
 
 DEFAULT_TOLERANCE: Final = 1e-3
 """[width] Tolerance where none is given. [contract]"""

@@ -14,8 +14,9 @@ import pytest
 from experiments.replay import run as replays
 from experiments.replay.files import JSON, REGIONS, TRIALS, trial_table
 from experiments.replay.run import Replay, replay, run_failures
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case, read_case
+from icage.formats.case_json import read_case
 from icage.hand import Placement
 from icage.sampling import Starts, draw_starts
 from models import CASES, case_paths

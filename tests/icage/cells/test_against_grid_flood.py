@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from icage.formats.case_json import Case, parse_case
+from icage.case import Case
+from icage.formats.case_json import parse_case
 from icage.planner import plan
 from models import CASES
 from tests.oracles import grid_flood

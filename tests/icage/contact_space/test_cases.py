@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.membership import query
 from icage.contact_space.method import CONTACT_SPACE, ContactSpace
 from icage.errors import InputError
-from icage.formats.case_json import Case, read_case
+from icage.formats.case_json import read_case
 from icage.planner import plan
 from models import CASES
 from tests.oracles.geometry import Ring, unit_hand

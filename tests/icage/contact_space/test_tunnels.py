@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from icage.case import Case
 from icage.contact_space.method import CONTACT_SPACE, ContactSpace
-from icage.formats.case_json import Case, read_case
+from icage.formats.case_json import read_case
 from icage.planner import plan
 from models import CASES, HARD
 from tests.oracles.grid_flood import bracket_sigma_max

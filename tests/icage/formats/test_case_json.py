@@ -11,8 +11,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from icage.case import Case
 from icage.errors import CaseError, GraspError, HandError, InputError, OutlineError
-from icage.formats.case_json import Case, parse_case, read_case, read_object
+from icage.formats.case_json import parse_case, read_case, read_object
 from models import CASES
 from tests.icage.formats.svg.drawings import drawing
 

@@ -32,8 +32,9 @@ from experiments.study.inputs.fields import HELP
 from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
 from experiments.study.run.command import command_line
 from experiments.study.run.session import session_of
+from icage.case import Case
 from icage.errors import InputError
-from icage.formats.case_json import Case, read_case
+from icage.formats.case_json import read_case
 from models import CASES
 from tests.experiments.commands.runner import here
 from tests.experiments.small import cage_of, t_case, write_case

@@ -28,9 +28,10 @@ from experiments.study.run.shard import (
 )
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.case import Case
 from icage.cells.membership import TARGET, query
 from icage.errors import IcageError
-from icage.formats.case_json import Case, read_case
+from icage.formats.case_json import read_case
 from icage.geometry.contact_types import supports
 from icage.hand import HandShape, Placement
 from icage.outline import Outline

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from numbers import Real
+
 import numpy as np
 import shapely
+from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray
 from icage.errors import GraspError
@@ -16,6 +20,41 @@ LARGEST_RADIUS = 10.0
 
 _QUADRANT = 64
 """Segments a quadrant of the offset that tells a closed pocket from the outside."""
+
+
+def as_contacts(contacts: ArrayLike) -> FloatArray:
+    """Finger centres as an array (3, 2) of its own, or a GraspError that says what was found.
+
+    Examples
+    --------
+    >>> as_contacts([[0, 0], [1, 0], [0, 1]]).shape
+    (3, 2)
+    """
+    try:
+        points = np.array(contacts, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise GraspError(
+            f"contacts are a {type(contacts).__name__}; three finger centres [x, y] are needed"
+        ) from error
+    if points.shape != (3, 2):
+        raise GraspError(
+            f"contacts have the shape {points.shape}; three finger centres [x, y], shape (3, 2), "
+            "are needed"
+        )
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise GraspError(f"contact {bad[0] + 1} is {points[bad[0]].tolist()}; it must be finite")
+    return points
+
+
+def check_radius(finger_radius: float) -> float:
+    """The radius as a float, or a GraspError: a finite number, 0 or more, is needed."""
+    if not isinstance(finger_radius, Real) or isinstance(finger_radius, bool):
+        raise GraspError(f"finger_radius is {finger_radius!r}; a number is needed")
+    radius = float(finger_radius)
+    if not math.isfinite(radius) or radius < 0.0:
+        raise GraspError(f"finger_radius is {radius}; a finite number, 0 or more, is needed")
+    return radius
 
 
 def check_contacts(
