@@ -26,8 +26,11 @@ from experiments.study.map import draw_map
 from experiments.study.results_md import results_page
 from experiments.whole_files import whole_file
 
-COLOURS: Final = 32
-"""Of a small picture: flat colours and the edges of letters need no more."""
+COLOURS: Final = 128
+"""Of a small picture: enough for the scale of rates, lines and the edges of letters."""
+
+WIDE: Final = 1000
+"""[pixel] Of a small picture."""
 
 
 def page_of(document: dict[str, Any]) -> str:
@@ -58,7 +61,10 @@ def draw_small_map(folder: Path, path: Path) -> None:
     cage = study_of(document).cage
     draw_map(document, pq.read_table(folder / TRIALS), cage, figure_regions(cage), path)
     with Image.open(path) as picture:
-        small = picture.convert("RGB").quantize(COLOURS)
+        height = round(picture.height * WIDE / picture.width)
+        small = picture.convert("RGB").resize((WIDE, height), Image.Resampling.LANCZOS)
+        # by coverage: the median cut gives all its colours to the hexagons and none to their scale
+        small = small.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
     with whole_file(path) as part:
         small.save(part, format="PNG", optimize=True)
 

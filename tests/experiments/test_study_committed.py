@@ -12,7 +12,7 @@ from experiments.studies.__main__ import OUT, ready
 from experiments.studies.pages import page_of, read_finished, write_pages
 
 DOCS = OUT.parent
-SMALL = 90_000
+SMALL = 75_000
 """[byte] A picture that a page shows."""
 
 NAMES = sorted(one.name for one in ready())
