@@ -22,7 +22,7 @@ from icage.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.tolerance import COLLISION, LEVEL
 
 VERDICTS: Final = ("target", "caged", "other", "escapes", "collision")
-"""Meaning of the verdict codes 0..4. [contract]"""
+"""Meaning of the verdict codes 0..4. [docs/formats.md, icage query]"""
 
 TARGET, CAGED, OTHER, ESCAPES, COLLIDES = range(5)
 
