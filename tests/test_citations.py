@@ -167,3 +167,27 @@ def test_a_planted_citation_is_found(bad: str) -> None:
 def test_code_and_links_are_no_citations() -> None:
     assert not list(citations(Path("a.py"), 'x = table["theory"]\ny = a[2018]\n'))
     assert not list(citations(Path("a.md"), "See [the theory](theory.md) and `[contract]`."))
+
+
+def broken_links(page: Path, text: str) -> list[str]:
+    """Relative links of a page that lead nowhere."""
+    links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", re.sub(r"(``|`)[^`\n]*\1", "", text))
+    return [k for k in links if "://" not in k and not (page.parent / k).exists()]
+
+
+def test_links_of_all_pages_lead_somewhere() -> None:
+    for page in (p for p in pages() if p.suffix == ".md"):
+        assert not broken_links(page, page.read_text(encoding="utf-8")), page
+
+
+def test_every_page_is_in_the_index() -> None:
+    index = ROOT / "docs" / "index.md"
+    linked = set(re.findall(r"\]\(([^)#]+\.md)\)", index.read_text(encoding="utf-8")))
+    there = {p.relative_to(index.parent).as_posix() for p in (ROOT / "docs").glob("*.md")}
+    there |= {f"decisions/{p.name}" for p in (ROOT / "docs" / "decisions").glob("*.md")}
+    assert there - {"index.md"} <= linked
+
+
+def test_a_planted_broken_link_is_found() -> None:
+    text = "See [this](theory.md), [that](nowhere.md) and [there](https://example.org/a.md)."
+    assert broken_links(ROOT / "docs" / "index.md", text) == ["nowhere.md"]
