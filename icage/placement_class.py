@@ -1,4 +1,4 @@
-"""What a query says of a placement of the hand, by name and by code. [docs/formats.md]"""
+"""What a query says of a placement, by name and by code. [docs/formats.md, icage query]"""
 
 from __future__ import annotations
 

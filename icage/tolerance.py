@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 DEPTH_CUT: Final = 1e-10
-"""[diameter] A local minimum of sigma counts if it is deeper than this. [contract; theory.md 1]"""
+"""[diameter] A local minimum of sigma counts if it is deeper. [docs/theory.md, Sec. 2.5]"""
 
 MERGE_VERTEX: Final = 3e-10
 """[diameter] Vertices this close to the chord of their neighbours are dropped: far below every
@@ -17,23 +17,25 @@ published figure, far above the rounding of a rotated input, and above SAME_POIN
 pieces next to a configuration are those that hold it."""
 
 CONTACT_OFF: Final = 1e-6
-"""[diameter] A target contact may lie this far off the (offset) outline. [contract]"""
+"""[diameter] A target contact may lie this far off the (offset) outline.
+[docs/formats.md, Tolerances]"""
 
 TARGET_SHIFT: Final = 1e-5
-"""[diameter] The nearest local minimum is the target if the fingers move less. [contract]"""
+"""[diameter] The nearest local minimum is the target if the fingers move less ...
+[docs/formats.md, Tolerances]"""
 
 TARGET_TURN: Final = 1e-3
-"""[rad] ... and the hand turns less. [contract]"""
+"""[rad] ... and the hand turns less. [docs/formats.md, Tolerances]"""
 
 NOT_A_CAGE: Final = 1e-9
-"""[1] sigma_max / sigma_0 - 1 below this is not a cage. [contract]"""
+"""[1] sigma_max / sigma_0 - 1 below this is not a cage. [docs/formats.md, Tolerances]"""
 
 COLLISION: Final = 1e-9
-"""[diameter] A finger deeper than this inside the object collides. [contract]"""
+"""[diameter] A finger deeper than this inside the object collides. [docs/formats.md, Tolerances]"""
 
 LEVEL: Final = 5e-10
-"""[1] Two levels of sigma this close (relative) are one: half of what the contract allows a query
-to leave open, so that a grasp queried at its own sigma lies in its own basin."""
+"""[1] Two levels of sigma this close (relative) are one: half of what a query may leave open, so
+that a grasp queried at its own sigma lies in its own basin. [docs/formats.md, Tolerances]"""
 
 PASS_ERROR: Final = 1e-12
 """[diameter] A pass value that doubles may miss by more than this is computed in double-double;
@@ -47,10 +49,12 @@ FREE_FINGER: Final = 1e-7
 """[diameter] A finger further than this from the outline touches nothing."""
 
 SIGMA_MAX_GAP: Final = 1e-4
-"""[1] Disc fingers: arcs are refined until sigma_max is bracketed this well. [contract]"""
+"""[1] Disc fingers: arcs are refined until sigma_max is bracketed this well.
+[docs/formats.md, Tolerances]"""
 
 SIGMA_FIRST_SPREAD: Final = 1e-3
-"""[1] Disc fingers: sigma_first counts as converged if all resolutions agree to this. [contract]"""
+"""[1] Disc fingers: sigma_first counts as converged if all resolutions agree to this.
+[docs/formats.md, Tolerances]"""
 
 REGION_LEVEL: Final = 1e-9
 """[1] Regions are drawn this far (relative) below their level: at it the puncture opens."""

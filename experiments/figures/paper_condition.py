@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -21,10 +22,19 @@ from icage.formats.whole_files import whole_file
 _STRIP = 44.0
 """[pt]"""
 
+_FINEST = 1e-3
+"""[diameter] Regions are drawn this exactly (a fifth of a point): their certified bounds have
+thousands of corners that nobody can see."""
+
 
 def draw_counterexample(cage: Cage, placement: FloatArray, verdict: str, path: Path) -> None:
     """Draw target, regions at sigma_max and a placement (4,) that meets the condition, as SVG."""
-    regions = [r for r in caging_regions(cage) if r.bound == "inner"]
+    finest = _FINEST * cage.outline.diameter
+    regions = [
+        replace(r, geometry=shapely.simplify(r.geometry, finest))
+        for r in caging_regions(cage)
+        if r.bound == "inner"
+    ]
     hand = cage.hand.fingers(placement)
     bounds = shapely.total_bounds(
         np.array([cage.outline.polygon, *(r.geometry for r in regions)], dtype=object)

@@ -1,7 +1,7 @@
 """Intervals for rates: Wilson's, how often they hold the true rate, and when to stop counting.
 
 Everything here counts successes in independent trials of one rate. With q the rate seen, n the
-trials and z the normal quantile, Wilson's bounds are
+trials and z the normal quantile, Wilson's bounds [Wilson1927] are
 
     (q + z^2 / 2n -+ z sqrt(q (1 - q) / n + z^2 / 4n^2)) / (1 + z^2 / n)
 
@@ -62,7 +62,7 @@ def wilson_bounds(
 
 
 def rate_upper(successes: int, trials: int) -> float:
-    """Upper end of the exact one-sided 95 % bound on a rate (Clopper and Pearson), 1 at most.
+    """Upper end of the exact one-sided 95 % bound on a rate, at most 1. [Clopper1934]
 
     At this rate so few successes have probability 0.05. What is promised of escapes and failures is
     this bound: Wilson's, which is shorter, says 0.0133 of 0 in 200, and 0 in 200 still happens in

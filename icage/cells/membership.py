@@ -25,7 +25,7 @@ from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
 
 VERDICTS: Final = tuple(one.value for one in PlacementClass)
-"""Meaning of the verdict codes 0..4. [contract]"""
+"""Meaning of the verdict codes 0..4. [docs/formats.md, icage query]"""
 
 TARGET, CAGED, OTHER, ESCAPES, COLLIDES = PlacementCode
 

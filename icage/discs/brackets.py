@@ -2,7 +2,7 @@
 
 sigma_max grows with the obstacle: chords give a lower bound, tangents an upper one, and both are
 refined until they agree. sigma_first does not (a larger obstacle can make a minimum or destroy
-one), so no polygon bounds it: the smallest value met is the one to trust. [theory.md, 4]
+one), so no polygon bounds it: the smallest value met is the one to trust. [docs/theory.md, Sec. 4]
 
 An engine that misses connections (``ContactSpace(tunnels=False)``, for teaching) misses others on
 the next polygon, so that its levels need not grow with the obstacle. Where they do not, the two

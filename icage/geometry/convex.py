@@ -17,7 +17,7 @@ from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
 
 MAX_EDGES: Final = 10
-"""Cap on edges per piece; theory.md says 8-12: larger pieces are fewer, but cost more each."""
+"""Cap on edges per piece: larger ones are fewer, but cost more each. [docs/theory.md, Sec. 3.1]"""
 
 _FILTER: Final = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
 """[1] Relative error bound of the float orientation determinant. [Shewchuk1997, ccwerrboundA]"""

@@ -3,7 +3,7 @@
 Slivers (fine arcs of disc fingers make triangles with angles of 1e-5 and less) turn a rounding
 error of one unit in the last place into 1e-10 of the diameter and more. Differences of two
 doubles and products of two doubles are exact here, so the kernels that use it answer for the
-polygon as it is given, and not for one that lies a rounding error away. [Dekker1971, Hida2001]
+polygon as it is given, and not for one that lies a rounding error away. [Dekker1971] [Hida2001]
 """
 
 from __future__ import annotations

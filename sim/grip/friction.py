@@ -7,7 +7,7 @@ the lines from the fingers to the common point make the angle theta with the nor
 
     |theta| <= atan(mu)
 
-at every such end. [physics note 0.5]
+at every such end. [docs/physics.md, Friction]
 """
 
 from __future__ import annotations

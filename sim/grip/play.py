@@ -1,7 +1,7 @@
 """The play of a grasp: how far the object turns in a rigid hand a little larger than the target.
 
 For three fingers on three edges sigma(theta) = sigma_0 / cos(theta): the object turns about the
-point where the force lines meet [physics note 0.4, Miquel], so the play at sigma = (1 + delta)
+point where the force lines meet [docs/theory.md, Sec. 2.6], so the play at sigma = (1 + delta)
 sigma_0 is acos(1 / (1 + delta)), a square root; with concave corners it is linear in delta.
 """
 

@@ -1,7 +1,7 @@
 """One set of colours for every picture, readable with any kind of colour blindness.
 
-The three fingers take blue, vermillion and bluish green of Okabe and Ito's palette (Color
-Universal Design, 2008), which stay apart for protan, deutan and tritan vision; numbers beside
+The three fingers take blue, vermillion and bluish green of Okabe and Ito's palette
+[Okabe2008], which stay apart for protan, deutan and tritan vision; numbers beside
 the fingers say the same without colour.
 """
 

@@ -86,7 +86,7 @@ def _arrow(axes: Axes, study: Study, contact: FloatArray, way: FloatArray) -> No
 
 
 def _of_two_fingers(study: Study) -> list[Shown]:
-    """One grasp of each kind of Lemma 4.3, best with room for the third finger."""
+    """One grasp of each kind, best with room for the third finger. [Bunis2018, Lemma 4.3]"""
     best: dict[str, tuple[float, FloatArray]] = {}
     for grasp in pair_grasps(study.boundary):
         for pair in range(3):

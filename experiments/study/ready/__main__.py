@@ -21,7 +21,7 @@ from experiments.study.run.session import run_session, session_of
 from models import CASES, object_names
 
 HERE = Path(__file__).parent
-OUT = HERE.parents[1] / "docs" / "studies"
+OUT = HERE.parents[2] / "docs" / "studies"
 
 THREE_EDGES = os.path.relpath(CASES / "disc_hammer.json")
 """From here: what is written names no place of this machine."""

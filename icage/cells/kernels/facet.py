@@ -3,7 +3,7 @@
 Finger i stands at P + tau e on the segment, the others at that point plus w (z_j - z_i), each in
 its convex piece. Every constraint is linear in (tau, w); pairing the lower and the upper bounds on
 tau (Fourier-Motzkin) leaves half planes for w alone, and the pass value is the least |w| in them.
-Our own; theory in docs/decisions/0001-cells.md.
+Our own. [docs/theory.md, Sec. 3.3]
 
 The doubles go first; wherever rounding could move the value by more than ``worst`` the answer is
 computed again in double-double arithmetic from the same vertices.

@@ -3,8 +3,8 @@
 A cell "finger 1 in piece a, finger 2 in b, finger 3 in c" is one convex set of R^4 on which
 sigma = |w| is convex, so its sublevel sets are connected; two cells that differ by one step of one
 finger across a shared edge join exactly at the least sigma on that facet. Taking passes in
-ascending order (Prim) visits everything that is reachable below a level before anything above it.
-Our own; theory in docs/decisions/0001-cells.md.
+ascending order [Prim1957] visits everything that is reachable below a level before anything above
+it. Our own. [docs/theory.md, Sec. 3.2, Sec. 3.4]
 """
 
 # pyright: basic

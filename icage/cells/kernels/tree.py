@@ -35,7 +35,7 @@ def find_at(parent, stamp, node, level):
 
 @compiled
 def merge(node_birth, edges, edge_value, below):
-    """Kruskal over the passes below a level.
+    """Kruskal's union over the passes below a level. [Kruskal1956]
 
     Union by size, no path compression: ``stamp`` is the level at which a node was hung below its
     parent, so that the tree answers for every level. Returns (parent, stamp, merges, lows):

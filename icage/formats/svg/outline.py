@@ -27,7 +27,7 @@ from icage.outline import LARGEST_COORDINATE, Outline
 from icage.units import Unit
 
 DEFAULT_TOLERANCE: Final = 1e-3
-"""[width] Tolerance where none is given. [contract]"""
+"""[width] Tolerance where none is given. [docs/formats.md, Case file]"""
 
 TOLERANCE_RANGE: Final = (1e-6, 0.1)
 """[width] Finer is beyond any drawing, coarser is no outline of it."""
@@ -36,7 +36,7 @@ MAX_POINTS: Final = 200_000
 """Vertices of the flattened drawing."""
 
 _PIXEL: Final[dict[Unit, float]] = {"m": 0.0254 / 96.0, "cm": 2.54 / 96.0, "mm": 25.4 / 96.0}
-"""[unit] A pixel of a drawing that states its size: 96 an inch. [CSS Values 4, Sec. 6.2]"""
+"""[unit] A pixel of a drawing that states its size: 96 an inch. [CSS2024, Sec. 6.2]"""
 
 _FLATTEN: Final = 0.02
 _SIMPLIFY: Final = 0.95

@@ -16,9 +16,10 @@ _HALVINGS = 12
 def simplified(ring: FloatArray, within: float) -> FloatArray:
     """Ring (m, 2) of vertices of ``ring`` (k, 2, open) at most ``within`` from it, either way.
 
-    [Douglas and Peucker 1973] between the vertices that touch the bounding box, which stay: so
-    the box stays as it is. A simplified chain remains within ``within`` of its chords (discs
-    around a chord are convex) and covers them (it is connected), hence the Hausdorff distance.
+    Chords split where the ring is furthest off [Douglas1973], between the vertices that touch the
+    bounding box, which stay: so the box stays as it is. A simplified chain remains within
+    ``within`` of its chords (discs around a chord are convex) and covers them (it is connected),
+    hence the Hausdorff distance.
     """
     for halving in range(_HALVINGS):
         fewer = _chains(ring, within / 2.0**halving)

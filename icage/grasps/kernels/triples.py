@@ -29,7 +29,8 @@ def contact_at(kind, point, normal, px, py):
 def squeezes(x, y, fx, fy):
     """Whether unit forces balance with positive shares and closing does positive work.
 
-    Positive lambda with sum lambda_i f_i = 0, and sum lambda_i (f_i . p_i) < 0. [theory.md, 1]
+    Positive lambda with sum lambda_i f_i = 0, and sum lambda_i (f_i . p_i) < 0.
+    [docs/theory.md, Sec. 2.6]
     """
     a = fx[1] * fy[2] - fy[1] * fx[2]
     b = fx[2] * fy[0] - fy[2] * fx[0]

@@ -66,7 +66,7 @@ def test_sigma_max_lies_in_the_bracket_and_five_percent_off_does_not(name: str) 
 
 @pytest.mark.slow
 def test_bracket_refutes_the_search_without_tunnel_edges() -> None:
-    """3.4 % too high: the known mistake of the paper's method on this case (theory.md)."""
+    """3.4 % too high: what tunnel edges are for. [docs/theory.md, Sec. 5.2]"""
     _, expected = load("tunnel_golden")
     assert not bracket_of("tunnel_golden").admits(expected["sigma_max_without_tunnel_edges"])
 

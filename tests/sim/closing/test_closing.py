@@ -171,7 +171,7 @@ def test_progress_counts_every_trial() -> None:
 
 
 def test_three_edges_obey_sigma_0_over_cos_theta() -> None:
-    """Turning about the concurrency point with all fingers touching. [physics.md, 0.4; Miquel]"""
+    """Turning about the concurrency point with all fingers touching. [docs/theory.md, Sec. 2.6]"""
     grasp = triangle()
     scene = grasp.scene()
     place = grasp.target.as_array()
@@ -192,7 +192,7 @@ def test_three_edges_obey_sigma_0_over_cos_theta() -> None:
 
 
 def test_friction_jams_a_three_edge_grasp_within_its_cone() -> None:
-    """|theta| <= atan(mu) + 0.01 at rest, and the jam is not called a success. [physics.md, 3]"""
+    """|theta| <= atan(mu) + 0.01 at rest, and the jam is no success. [docs/physics.md, Friction]"""
     grasp, mu = triangle(), 0.1
     scene = grasp.scene(SimConfig(friction=mu, max_time=2.0))
     assert (scene.model.geom_condim[scene.model.geom_contype > 0] == 3).all()

@@ -275,7 +275,7 @@ def test_a_table_that_holds_more_than_the_fingers_push():
 
 @pytest.mark.parametrize("mu", [0.05, 0.2])
 def test_friction_jams_a_three_edge_grasp_within_its_cone(mu: float):
-    """|theta| <= atan(mu) at rest. [physics.md, 3]"""
+    """|theta| <= atan(mu) at rest. [docs/physics.md, Friction]"""
     grasp = triangle()
     scene = scene_of(grasp, friction=1.0)
     starts = starts_near(grasp, 12, seed=11, turn=0.4, opening=1.3)

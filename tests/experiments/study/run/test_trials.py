@@ -402,7 +402,10 @@ def test_fingers_of_another_radius_have_another_target():
 
 
 def test_a_yielding_linkage_gives_way_in_proportion():
-    """By about half of the play on the L. [physics.md, Speed, time step, inertia, compliance]"""
+    """By about half of the play on the L.
+
+    [docs/physics.md, Speed, time step, inertia, compliance]
+    """
     ran = run(4, "L", vary={"linkage_play": "grid:0.1%,0.2%"})
     assert set(outcomes(ran)) == {"target"}
     off = ran.errors[:, 0]
