@@ -11,6 +11,7 @@ from icage.arrays import FloatArray
 from icage.cells.solver import Search, Tree
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from icage.way_out import free_from
 
 Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
 
@@ -133,6 +134,17 @@ class Cage:
     def target_placement(self) -> Placement:
         """The target as a placement of the hand in the object's frame."""
         return Placement.from_contacts(self.contacts)
+
+    @property
+    def escape_free_at(self) -> int | None:
+        """First row of ``escape_path`` at which the hand can shrink to a point as it stands.
+
+        From there on nothing holds the object (see ``icage.way_out``); the rows after it only
+        show how the planner pinches the hand. None without an escape path.
+        """
+        if self.escape_path is None:
+            return None
+        return free_from(self.outline, self.hand, self.finger_radius, self.escape_path)
 
 
 def not_a_cage(

@@ -31,6 +31,9 @@ NOT_A_CAGE: Final = 1e-9
 COLLISION: Final = 1e-9
 """[diameter] A finger deeper than this inside the object collides. [contract]"""
 
+PINCHED: Final = 1e-12
+"""[diameter] A hand of at most this sigma is a point: above the rounding of a pinched corner."""
+
 LEVEL: Final = 5e-10
 """[1] Two levels of sigma this close (relative) are one: half of what the contract allows a query
 to leave open, so that a grasp queried at its own sigma lies in its own basin."""

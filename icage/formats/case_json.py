@@ -11,8 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from icage.arrays import FloatArray, read_only
+from icage.contacts import check_contacts
 from icage.errors import CaseError, FormatError, InputError
-from icage.formats.case_contacts import check_contacts
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
 from icage.formats.svg.outline import Unit, read_svg
@@ -32,7 +32,7 @@ UNITS: Final = ("m", "mm", "cm")
 @dataclass(frozen=True, slots=True, eq=False)
 class Object:
     """An outline with its name and unit, the radius of the fingers meant for it, and the files
-    all this was read from.
+    all this was read from. ``size_from`` tells where a drawing's size is from; else it is empty.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Object:
     outline: Outline
     finger_radius: float
     sources: tuple[Path, ...] = ()
+    size_from: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
