@@ -19,6 +19,7 @@ from icage.values import Value
 if TYPE_CHECKING:
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
+from icage.way_out import free_from
 
 Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
 
@@ -246,6 +247,17 @@ class Cage(Value):
         never = ", never escapes" if self.sigma_max is None else ""
         count = f"{len(self.grasps)} grasp{'' if len(self.grasps) == 1 else 's'}"
         return f"<Cage{name}: sigma {self.sigma_0:.6g}{first}{top}{unit}{never}, {count}>"
+
+    @property
+    def escape_free_at(self) -> int | None:
+        """First row of ``escape_path`` at which the hand can shrink to a point as it stands.
+
+        From there on nothing holds the object (see ``icage.way_out``); the rows after it only
+        show how the planner pinches the hand. None without an escape path.
+        """
+        if self.escape_path is None:
+            return None
+        return free_from(self.outline, self.hand, self.finger_radius, self.escape_path)
 
 
 def not_a_cage(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, Literal
 
@@ -42,6 +42,8 @@ class Case(Value):
         case whose grasp is still to be chosen. Read it as ``contacts``.
     sources:
         The files it was read from: the case file and, if it names one, the drawing.
+    size_from:
+        Where a drawing's size is from, in words; empty for anything else.
 
     Raises
     ------
@@ -65,7 +67,8 @@ class Case(Value):
     outline: Outline
     finger_radius: float = 0.0
     target: FloatArray | None = None
-    sources: tuple[Path, ...] = ()
+    sources: tuple[Path, ...] = field(default=(), compare=False)
+    size_from: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not 0 < len(self.name) <= MAX_NAME:  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -78,25 +78,30 @@ class HandShape:
 
     @classmethod
     def from_angles(cls, phi_1: float, phi_2: float) -> HandShape:
-        """Shape from the angles at fingers 1 and 2, [rad]. [Bunis2018, Def. 1, Eq. (1)]
+        """Shape from the directions from fingers 1 and 2 to finger 3, [rad], both against that from
+        finger 1 to finger 2: phi_2 is an outer angle of the triangle. [Bunis2018, Def. 1, Eq. (1)]
 
         The paper asks for 0 < phi_1, phi_2 < pi; Eq. (1) also needs phi_3 = phi_2 - phi_1 > 0.
         """
         if not (0.0 < phi_1 < phi_2 < math.pi):
             raise HandError(
                 f"phi = ({math.degrees(phi_1):.6g}, {math.degrees(phi_2):.6g}) degrees; "
-                "0 < phi_1 < phi_2 < 180 is needed"
+                "0 < phi_1 < phi_2 < 180 is needed (phi_2 is measured outside the triangle: an "
+                "equilateral hand is (60, 120))"
             )
         return cls(cmath.rect(math.sin(phi_2) / math.sin(phi_2 - phi_1), phi_1))
 
     @classmethod
     def from_angles_deg(cls, phi_1: float, phi_2: float) -> HandShape:
-        """Shape from the angles at fingers 1 and 2, [deg]."""
+        """``from_angles`` in degrees; the equilateral hand is (60, 120)."""
         return cls.from_angles(math.radians(phi_1), math.radians(phi_2))
 
     @property
     def phi(self) -> tuple[float, float]:
-        """(phi_1, phi_2), [rad]: directions from fingers 1, 2 to finger 3. [Bunis2018, Def. 1]"""
+        """(phi_1, phi_2), [rad]. [Bunis2018, Def. 1]
+
+        Directions from fingers 1 and 2 to finger 3, against that from finger 1 to finger 2.
+        """
         return cmath.phase(self.z_3), cmath.phase(self.z_3 - 1.0)
 
     @property

@@ -33,6 +33,9 @@ NOT_A_CAGE: Final = 1e-9
 COLLISION: Final = 1e-9
 """[diameter] A finger deeper than this inside the object collides. [docs/formats.md, Tolerances]"""
 
+PINCHED: Final = 1e-12
+"""[diameter] A hand of at most this sigma is a point: above the rounding of a pinched corner."""
+
 LEVEL: Final = 5e-10
 """[1] Two levels of sigma this close (relative) are one: half of what a query may leave open, so
 that a grasp queried at its own sigma lies in its own basin. [docs/formats.md, Tolerances]"""

@@ -83,7 +83,8 @@ class PhysicalCase:
             return "as given"
         target = "at another grasp of that hand" if self.another else "where this hand closes"
         share = self.case.finger_radius / self.case.outline.diameter
-        return f"derived from point fingers: discs of {100.0 * share:.3g} %, {target}"
+        size = f"radius {100.0 * share:.3g} % of the diameter"
+        return f"derived from point fingers: discs of {size}, {target}"
 
     @classmethod
     def of(

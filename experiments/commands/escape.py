@@ -25,10 +25,12 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--attacks", metavar="N", type=count, default=24, help="attacks a level (default 24)"
     )
-    parser.add_argument("--seed", metavar="S", type=seed, default=0, help="default 0")
+    parser.add_argument(
+        "--seed", metavar="S", type=seed, default=0, help="seed of all random numbers (0)"
+    )
     add_json(parser)
     parser.add_argument(
-        "--threads", metavar="T", type=count, default=None, help="default: one per core"
+        "--threads", metavar="T", type=count, default=None, help="threads to run on (one per core)"
     )
 
 

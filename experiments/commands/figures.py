@@ -17,7 +17,8 @@ def add_parser(subparsers: Any) -> None:
         help="the paper's figures, drawn from a case",
         description="Draw the figures of Bunis et al. 2018 from a case by the paper's own method: "
         + "; ".join(f"{name}: {words}" for name, words in FIGURES.items())
-        + ".",
+        + ". Levels, punctures, caging regions and the way out are those of `icage plan`; with "
+        "discs everything else is of point fingers on one polygon, and each line printed says so.",
     )
     parser.add_argument(
         "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
@@ -26,10 +27,14 @@ def add_parser(subparsers: Any) -> None:
         "--out", metavar="DIR", type=file_name, required=True, help="folder, made if it is missing"
     )
     parser.add_argument(
-        "--format", choices=("svg", "pdf", "png"), default="svg", help="file format (svg)"
+        "--format", choices=("svg", "pdf", "png"), default="svg", help="format of the files (svg)"
     )
     parser.add_argument(
-        "--only", metavar="NAME", nargs="+", choices=tuple(FIGURES), help="draw these figures only"
+        "--only",
+        metavar="NAME",
+        nargs="+",
+        choices=tuple(FIGURES),
+        help="names of the figures to draw (all)",
     )
 
 

@@ -24,6 +24,21 @@ if TYPE_CHECKING:
 
 _WORKERS = 2
 
+PHI_SKETCH = """\
+the hand's angles, P1 = phi_1 and P2 = phi_2, in degrees:
+
+               3
+              / \\
+             /   \\
+            /     \\
+           / phi_1 \\ phi_2
+          1---------2 - - - ->
+
+phi_1 is the direction from finger 1 to finger 3, phi_2 the direction from
+finger 2 to finger 3, both against the direction from finger 1 to finger 2.
+So phi_2 is measured outside the triangle: an equilateral hand is (60, 120),
+not (60, 60). Allowed is 0 < phi_1 < phi_2 < 180."""
+
 
 def add_parser(subparsers: Any) -> None:
     """Options of the command."""
@@ -31,7 +46,9 @@ def add_parser(subparsers: Any) -> None:
         "grasps",
         help="the best target grasps of an object",
         description="Search the three-finger immobilizing grasps of an object for those with the "
-        "largest cages, or list all immobilizing grasps of one given hand (--phi).",
+        "largest\ncages, or list all immobilizing grasps of one given hand (--phi).",
+        epilog=PHI_SKETCH,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "object",
@@ -39,13 +56,32 @@ def add_parser(subparsers: Any) -> None:
         type=file_name,
         help="drawing, case file, or a shipped object's name",
     )
-    parser.add_argument("--finger-radius", type=not_negative, help="radius of disc fingers")
-    parser.add_argument("--width", type=positive, help="longer side of a drawing, in UNIT")
-    parser.add_argument("--unit", choices=UNITS, help="unit of a drawing's width (m)")
     parser.add_argument(
-        "--phi", type=number, nargs=2, metavar=("P1", "P2"), help="shape of the hand, degrees"
+        "--finger-radius",
+        type=not_negative,
+        metavar="R",
+        help="radius of the disc "
+        "fingers, in the object's unit (the case's own, else 0: point fingers)",
     )
-    parser.add_argument("--top", type=count, default=10, help="how many to list (10)")
+    parser.add_argument(
+        "--width", type=positive, metavar="W",
+        help="longer side of a drawing, in UNIT (the size the drawing states, if any)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--unit",
+        choices=UNITS,
+        help="unit of a drawing's width and of the answer (the one in which the drawing states "
+        "its size; m if it states none)",
+    )
+    parser.add_argument(
+        "--phi",
+        type=number,
+        nargs=2,
+        metavar=("P1", "P2"),
+        help="list the grasps of one given hand: "
+        "phi_1 and phi_2 in degrees, as in the sketch below",
+    )
+    parser.add_argument("--top", type=count, default=10, metavar="K", help="how many to list (10)")
     parser.add_argument(
         "--aim",
         choices=("first", "cage"),
@@ -56,7 +92,8 @@ def add_parser(subparsers: Any) -> None:
         "--within",
         type=positive,
         metavar="DEG",
-        help="with --phi: search hands within DEG of that shape, read from any finger",
+        help="with --phi: search the hands whose two angles are within DEG of those given, "
+        "whichever finger is called the first",
     )
     parser.add_argument(
         "--corners",
@@ -65,7 +102,13 @@ def add_parser(subparsers: Any) -> None:
         default=0,
         help="least number of fingers in concave corners (0)",
     )
-    parser.add_argument("--seed", type=seed_option, default=0, help="of the random moves (0)")
+    parser.add_argument(
+        "--seed",
+        type=seed_option,
+        default=0,
+        metavar="S",
+        help="seed of the search's random moves (0)",
+    )
     add_json(parser)
 
 
@@ -188,10 +231,13 @@ def _entry(cage: Cage, aim: str) -> dict[str, Any]:
 
 
 def _print(thing: Case, radius: float, cages: list[Cage], aim: str) -> None:
+    from experiments.cases.named import size_words
+
     print(
-        f"{thing.name}: {len(thing.outline)} vertices, finger radius {radius:g} {thing.unit}, "
+        f"{thing.name}: {len(thing.outline)} vertices, {_fingers(radius, thing.unit)}, "
         f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
     )
+    print(f"size {size_words(thing)}")
     print(f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10}  phi [deg]         contacts")
     for cage in cages:
         first = _ratio(cage.sigma_first, cage.sigma_0)
@@ -200,6 +246,10 @@ def _print(thing: Case, radius: float, cages: list[Cage], aim: str) -> None:
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
         score = _score(cage, aim)
         print(f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}")
+
+
+def _fingers(radius: float, unit: str) -> str:
+    return f"disc fingers of radius {radius:g} {unit}" if radius > 0.0 else "point fingers"
 
 
 def _ratio(level: float | None, sigma_0: float) -> str:

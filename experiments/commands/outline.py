@@ -21,13 +21,20 @@ def add_parser(subparsers: Any) -> None:
         "--width",
         type=positive,
         help="longer side of the bounding box, in UNIT (the size the drawing states, if any)",
+        metavar="W",
     )
     parser.add_argument(
         "--tolerance",
         type=positive,
         help="largest distance between drawing and polygon, in UNIT (0.1 %% of the width)",
+        metavar="T",
     )
-    parser.add_argument("--unit", choices=UNITS, default="m", help="m, mm or cm (m)")
+    parser.add_argument(
+        "--unit",
+        choices=UNITS,
+        help="unit of W, T and the answer (the one in which the drawing states its size; m if it "
+        "states none)",
+    )
     add_json(parser)
 
 
@@ -35,30 +42,30 @@ def run(args: argparse.Namespace) -> int:
     """Read the drawing and write its vertices."""
     from pathlib import Path
 
+    from experiments.cases.named import read_drawing, size_words
     from icage.formats.case_json import FORMAT
     from icage.formats.json_out import write_json
-    from icage.formats.svg.outline import read_svg
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)
-    outline = read_svg(path, args.width, args.tolerance, args.unit)
-    command = f"icage outline {path.name} --unit {args.unit}"
+    thing = read_drawing(path, args.width, args.unit, args.tolerance)
+    outline = thing.outline
+    command = f"icage outline {path.name} --unit {thing.unit}"
     for option in ("width", "tolerance"):
         if getattr(args, option) is not None:
             command += f" --{option} {getattr(args, option):g}"
     document = {
         "format": FORMAT,
         "name": path.stem,
-        "unit": args.unit,
+        "unit": thing.unit,
         "outline": {"vertices": outline.vertices},
         "made_by": command,
     }
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
-        x, y = outline.vertices.max(axis=0)
         print(
-            f"{path.stem}: {len(outline)} vertices, {x:.6g} x {y:.6g} {args.unit}, "
-            f"diameter {outline.diameter:.6g} {args.unit}"
+            f"{path.stem}: {len(outline)} vertices, diameter {outline.diameter:.6g} {thing.unit}\n"
+            f"size {size_words(thing)}"
         )
     return 0

@@ -17,7 +17,9 @@ def add_parser(subparsers: Any) -> None:
         "plan",
         help="how far the hand on a target grasp may open",
         description="Compute the cage of a target grasp: sigma_0, sigma_first, sigma_max, "
-        "punctures, grasps, escape path and caging regions.",
+        "punctures, grasps, escape path and caging regions. A caging region is where one finger "
+        "may be; the JSON has each from inside and from outside (`bound`). The inner one is on the "
+        "safe side: draw that one, as --figure does.",
     )
     parser.add_argument(
         "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
@@ -34,7 +36,8 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--no-tunnels",
         action="store_true",
-        help="contact-space without the tunnel edges of Sec. V-B: unsafe, to show what they do",
+        help="with --method contact-space: leave out the tunnel edges of Sec. V-B; unsafe, to show "
+        "what they are for",
     )
 
 

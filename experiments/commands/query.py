@@ -14,7 +14,9 @@ def add_parser(subparsers: Any) -> None:
         "query",
         help="whether placements of the hand cage the object",
         description="Ask of every placement whether closing from there can end only in the "
-        "target, holds the object at all, or lets it escape.",
+        "target, holds the object at all, or lets it escape; and by how much the hand may open "
+        "before that changes (`margin` and `target_margin` of the JSON: openings, in sigma, and no "
+        "room for the hand to stand elsewhere).",
     )
     parser.add_argument(
         "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
@@ -23,7 +25,8 @@ def add_parser(subparsers: Any) -> None:
         "placements",
         metavar="PLACEMENTS",
         type=file_name,
-        help="CSV with the header x,y,theta,sigma (theta in radians), - for standard input",
+        help="CSV with the header x,y,theta,sigma: finger 1 at (x, y), finger 2 at distance sigma "
+        "in direction theta (radians); - for standard input",
     )
     add_json(parser)
 

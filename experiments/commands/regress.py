@@ -24,10 +24,13 @@ def add_parser(subparsers: Any) -> None:
     level.add_argument("--fast", action="store_true", help="five cases, 8 attacks each")
     level.add_argument("--full", action="store_true", help="200 attacks a case, all attackers")
     parser.add_argument(
-        "--cases", metavar="DIR", type=file_name, help="case files (default: the shipped ones)"
+        "--cases", metavar="DIR", type=file_name, help="folder of case files (the shipped ones)"
     )
     parser.add_argument(
-        "--baseline", metavar="FILE", type=file_name, help="default: the committed one"
+        "--baseline",
+        metavar="FILE",
+        type=file_name,
+        help="compare with FILE (the committed baseline)",
     )
     parser.add_argument(
         "--update-baseline",
@@ -41,7 +44,11 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--markdown", metavar="FILE", type=file_name, help="the table as a page")
     parser.add_argument("--junit", metavar="FILE", type=file_name, help="JUnit XML")
     parser.add_argument(
-        "--workers", metavar="N", type=count, default=None, help="default: one per core"
+        "--workers",
+        metavar="N",
+        type=count,
+        default=None,
+        help="processes to run on (one per core)",
     )
 
 

@@ -34,12 +34,14 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--trials", metavar="N", type=count, default=1000, help="closings a run (default 1000)"
     )
-    parser.add_argument("--seed", metavar="S", type=seed, default=0, help="default 0")
+    parser.add_argument(
+        "--seed", metavar="S", type=seed, default=0, help="seed of all random numbers (0)"
+    )
     parser.add_argument(
         "--video", action=argparse.BooleanOptionalAction, default=True, help="write replay.mp4"
     )
     parser.add_argument(
-        "--threads", metavar="T", type=count, default=None, help="default: one per core"
+        "--threads", metavar="T", type=count, default=None, help="threads to run on (one per core)"
     )
 
 

@@ -16,13 +16,15 @@ def add_parser(subparsers: Any) -> None:
         description="Close the simulated hand into the target grasp, lock the fingers, push the "
         "object in 8 directions and turn it both ways, shake it, test the contacts for form "
         "closure, and measure the play of a grasp on three edges. Point fingers become discs of "
-        "2 % of the diameter. Exit code 1 if the object is not held or a check failed.",
+        "radius 2 % of the diameter. Exit code 1 if the object is not held or a check failed.",
     )
     parser.add_argument(
         "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
     )
     add_json(parser)
-    parser.add_argument("--seed", metavar="S", type=seed, default=0, help="default 0")
+    parser.add_argument(
+        "--seed", metavar="S", type=seed, default=0, help="seed of all random numbers (0)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -49,7 +49,7 @@ def add_parser(subparsers: Any) -> None:
         "more --trials asked for",
     )  # fmt: skip
     parser.add_argument(
-        "--threads", metavar="T", type=count, default=None, help="default: one per core"
+        "--threads", metavar="T", type=count, default=None, help="threads to run on (one per core)"
     )
     parser.add_argument(
         "--shard", metavar="N", type=count, default=500, help="trials in a shard (default 500)"

@@ -101,9 +101,9 @@ def escape_table(result: Escape) -> list[str]:
         config = result.arena.scene.config
         above = "-" if result.above is None else f"{result.above:.6g}"
         lines.append(
-            f"below {result.below:.6g}, above {above}; rate: Wilson's 95 % bound; deepest: finger "
-            "over the diameter; overrun: of the stop, over sigma; "
-            "seen: least sigma that an escape had"
+            f"below {result.below:.6g}, above {above}; rate: under this at 95 % (exact one-sided "
+            "bound, Clopper-Pearson); deepest: finger over the diameter; overrun: of the stop, "
+            "over sigma; seen: least sigma that an escape had"
         )
         lines.append(
             f"time step {config.time_step:g} s, solref {_words(config.solref)}, solimp "

@@ -1,5 +1,8 @@
 """Intervals for rates: Wilson's, how often they hold the true rate, and when to stop counting.
 
+Two-sided intervals are Wilson's; the one-sided bound of ``rate_upper``, on what was hardly ever or
+never seen, is the exact one of Clopper and Pearson. Whatever prints one says which it is.
+
 Everything here counts successes in independent trials of one rate. With q the rate seen, n the
 trials and z the normal quantile, Wilson's bounds [Wilson1927] are
 

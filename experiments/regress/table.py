@@ -115,7 +115,7 @@ def bottom_line(rows: Sequence[Mapping[str, Any]]) -> str:
     return (
         f"{len(rows)} cases, {bad} failed; {target} of {trials} closings from guaranteed sets in "
         f"the target; {out} of {tried} attacks below sigma_max escaped (random attacks on one "
-        f"case: rate under {100.0 * worst:.1f} % at 95 %); "
+        f"case: rate under {100.0 * worst:.1f} % at 95 %, Clopper-Pearson); "
         f"{sum(r['escapes'] for r in above)} of {sum(r['attacks'] for r in above)} guided ones "
         f"above it; {thin} too thin for physics, {none} with nothing to close into"
     )

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from experiments.replay.filmed import Filmed, filmed_of_run
 from experiments.replay.run import Replay, Run
 from icage.arrays import FloatArray
 from icage.hand import Placement
@@ -46,8 +47,7 @@ class Clip:
         anyone can see.
     """
 
-    run: Run
-    trial: int
+    filmed: Filmed
     time: FloatArray
     qpos: FloatArray
     placements: FloatArray
@@ -55,11 +55,6 @@ class Clip:
 
     def __len__(self) -> int:
         return len(self.time)
-
-    @property
-    def outcome(self) -> str:
-        """How this trial was judged."""
-        return OUTCOMES[int(self.run.verdicts.outcome[self.trial])]
 
     @property
     def moving(self) -> tuple[int, int]:
@@ -76,7 +71,15 @@ def clips(done: Replay) -> list[Clip]:
     chosen = [(run, trial) for run in done.runs[:_MOST] for trial in _shown(run, per_run)][:_MOST]
     seconds = max(_SECONDS / max(len(chosen), _FEWEST), _SHORTEST / len(chosen))
     frames = round(FPS * seconds)
-    return [_clip(run, trial, frames) for run, trial in chosen]
+    return [
+        _clip(filmed_of_run(run, trial, OUTCOMES[int(run.verdicts.outcome[trial])]), frames)
+        for run, trial in chosen
+    ]
+
+
+def clip_alone(filmed: Filmed) -> Clip:
+    """A closing that is a film of its own."""
+    return _clip(filmed, round(FPS * max(_SECONDS / _FEWEST, _SHORTEST)))
 
 
 def _shown(run: Run, count: int) -> list[int]:
@@ -87,20 +90,19 @@ def _shown(run: Run, count: int) -> list[int]:
     return trials
 
 
-def _clip(run: Run, trial: int, frames: int) -> Clip:
-    start = Placement(*run.starts.placements[trial].tolist())
-    recording = record(run.scene, start, frame_time=0.002, max_frames=5000)
+def _clip(filmed: Filmed, frames: int) -> Clip:
+    start = Placement(*filmed.start.tolist())
+    recording = record(filmed.scene, start, frame_time=0.002, max_frames=5000)
     waiting, holding = round(_WAIT * frames), round(_HOLD * frames)
     moving = np.linspace(0.0, 1.0, frames - waiting - holding + 1)[1:]
     share = np.concatenate([np.zeros(waiting), moving, np.ones(holding)])
     at = share * _end_of_motion(recording)
     qpos = _resampled(at, recording.time, recording.qpos)
     return Clip(
-        run,
-        trial,
+        filmed,
         share,
         qpos,
-        run.scene.placements(qpos),
+        filmed.scene.placements(qpos),
         _averaged(at, recording.time, recording.finger_forces),
     )
 

@@ -43,15 +43,6 @@ Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Recorded:
-    """Number of a recorded trial, and what the planner said of its start."""
-
-    index: int
-    verdict: str
-    in_cage: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Run:
     """One set of placements of one grasp, closed and judged."""
 
@@ -60,12 +51,10 @@ class Run:
     second: Cage
     """The cage by the paper's method, for comparison and for the course of its search."""
     scene: Scene
-    which: StartSet | Literal["outside", "study"]
+    which: StartSet | Literal["outside"]
     starts: Starts
     closings: ClosingOutcomes
     verdicts: Verdicts
-    recorded: Recorded | None = None
-    """Of a film of one recorded trial."""
 
     @property
     def counts(self) -> dict[str, int]:

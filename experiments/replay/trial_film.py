@@ -1,16 +1,30 @@
-"""The film of one recorded trial: the replay's film with a single clip."""
+"""The film of one recorded trial."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from experiments.io.progress import stage_bar
+from experiments.replay.filmed import Filmed, filmed_alone
 from experiments.replay.recorded import Rerun, recorded_cage, recorded_regions
-from experiments.replay.run import Recorded, Replay, Run
-from experiments.replay.video import film
-from icage.case import Case
+from experiments.replay.video import film_alone
 from icage.formats.whole_files import whole_file
-from icage.sampling import Starts
+from sim.closing.judge import OUTCOMES
+
+
+def filmed(done: Rerun) -> Filmed:
+    """What is filmed of a trial that was closed again."""
+    trial, row = done.trial, done.trial.row
+    return filmed_alone(
+        trial.index,
+        row["grasp"],
+        recorded_cage(trial),
+        done.scene,
+        done.closings.start[0],
+        OUTCOMES[int(done.verdicts.outcome[0])],
+        row["verdict"],
+        row["set"] != "outside",
+    )
 
 
 def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:
@@ -19,14 +33,5 @@ def film_trial(done: Rerun, path: Path, camera: bool | None = None) -> None:
     Unlike the closing that is compared, the film also simulates the free travel before the first
     touch: its last frame may differ from the record by rounding, about 1e-9 of the diameter.
     """
-    trial, row = done.trial, done.trial.row
-    cage = recorded_cage(trial)
-    case = Case(row["grasp"], trial.run["unit"], trial.outline, cage.finger_radius, cage.contacts)
-    starts = Starts(done.closings.start, 1)
-    recorded = Recorded(trial.index, row["verdict"], row["set"] != "outside")
-    run = Run(
-        case, cage, cage, done.scene, row["set"], starts, done.closings, done.verdicts, recorded
-    )
     with stage_bar() as report, whole_file(path) as part:
-        replay = Replay((run,), row["seed"])
-        film(replay, case.name, {case.name: recorded_regions(trial)}, part, report, camera)
+        film_alone(filmed(done), recorded_regions(done.trial), part, report, camera)

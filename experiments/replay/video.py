@@ -18,9 +18,10 @@ from experiments.figures.drawing.canvas import Canvas, Pixels
 from experiments.figures.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
 from experiments.figures.drawing.hand_view import HandView, window_on
 from experiments.figures.drawing.shapes import tidied
-from experiments.replay.clips import FPS, Clip, clips
+from experiments.replay.clips import FPS, Clip, clip_alone, clips
+from experiments.replay.filmed import Filmed
 from experiments.replay.mp4 import write_mp4
-from experiments.replay.run import Replay, Report, Run
+from experiments.replay.run import Replay, Report
 from icage.cells.regions import FingerRegion
 from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
 from sim.camera.stage import Decor, View
@@ -43,7 +44,21 @@ def film(
     camera:
         Whether to use MuJoCo's renderer; None for "if it works here".
     """
-    chosen = clips(done)
+    _write(clips(done), name, regions, path, report, camera)
+
+
+def film_alone(
+    one: Filmed, regions: Sequence[FingerRegion], path: Path, report: Report,
+    camera: bool | None = None,
+) -> None:  # fmt: skip
+    """Write the film of one closing; ``regions`` are those to shade."""
+    _write([clip_alone(one)], one.grasp, {one.grasp: tuple(regions)}, path, report, camera)
+
+
+def _write(
+    chosen: Sequence[Clip], name: str, regions: RegionsByGrasp, path: Path, report: Report,
+    camera: bool | None,
+) -> None:  # fmt: skip
     total = sum(len(clip) for clip in chosen)
     use_camera = find_backend() is not None if camera is None else camera
 
@@ -61,11 +76,12 @@ def _frames(
 ) -> Iterator[Pixels]:
     """All frames, the canvas itself each time."""
     canvas = Canvas(WIDTH, HEIGHT)
-    for run in dict.fromkeys(clip.run.title for clip in chosen):
-        mine = [clip for clip in chosen if clip.run.title == run]
-        first = mine[0].run
-        shown = _inner(regions[first.case.name])
-        window = window_on(first.scene, np.concatenate([clip.qpos for clip in mine]), *MAIN)
+    for group in dict.fromkeys(clip.filmed.group for clip in chosen):
+        mine = [clip for clip in chosen if clip.filmed.group == group]
+        first = mine[0].filmed
+        shown = _inner(regions[first.grasp])
+        qpos = np.concatenate([clip.qpos for clip in mine])
+        window = window_on(first.scene, qpos, *MAIN, whole=first.whole)
         hand = HandView(first.scene, window, shown, first.cage.target_placement)
         page = Page(name, mine, shown)
         for number, clip in enumerate(mine):
@@ -100,14 +116,14 @@ def _photographed(
     hand: HandView, clip: Clip, window: View, regions: Sequence[FingerRegion], stack: ExitStack
 ) -> Painter | None:
     """MuJoCo's frames; those without motion are drawn once. None if the renderer fails."""
-    run: Run = clip.run
+    filmed = clip.filmed
     first, last = clip.moving
-    detail = 2e-3 * run.case.outline.diameter
+    detail = 2e-3 * filmed.cage.outline.diameter
     decor = Decor(
         [(r.finger, tidied(r.geometry, detail)) for r in regions if r.level_name != "sigma_first"],
-        run.cage.target_placement,
+        filmed.cage.target_placement,
     )
-    frames = render_frames(run.scene, clip.qpos[first : last + 1], window, decor)
+    frames = render_frames(filmed.scene, clip.qpos[first : last + 1], window, decor)
     stack.enter_context(closing(frames))
     taken: list[NDArray[np.uint8]] = []
     try:

@@ -71,7 +71,8 @@ class Answers:
 
     ``margin`` = escape level of the placement's component - sigma (nan: never escapes; 0 for the
     verdicts escapes and collision); ``target_margin`` = sigma_first - sigma for the verdict
-    target (nan otherwise, or if no level is first); ``in_cage`` whether it joins the target below
+    target (nan otherwise, or if no level is first). Both say how much further the hand may open
+    from there, not how far off it may stand. ``in_cage``: whether it joins the target below
     sigma_max.
     """
 

@@ -12,6 +12,7 @@ from icage.cells.solver import Configuration, Search, Terrain, Tree, below_escap
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
 from icage.tolerance import DEPTH_CUT, LEVEL
+from icage.way_out import corners_before_pinch
 
 
 class Joining(NamedTuple):
@@ -181,8 +182,10 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
     points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
-    rows = [found.terrain.placement(p) for p in points]
     # the last piece, or the finger that stands still, takes all three
     still = found.terrain.contacts(points[-1])[max(found.standing, 0)]
+    # a last pass that is a pinched hand already is the end itself
+    points = points[: corners_before_pinch([p.w for p in points], found.terrain.pieces.diameter)]
+    rows = [found.terrain.placement(p) for p in points]
     rows.append(np.array([*still, rows[-1][2], 0.0]))
     return np.array(rows), found.terrain.hand.least_gap([p.w for p in points])

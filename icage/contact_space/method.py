@@ -16,6 +16,7 @@ from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
+from icage.way_out import corners_before_pinch
 
 __all__ = ["CONTACT_SPACE", "ContactLook", "ContactSpace"]
 
@@ -82,10 +83,12 @@ class ContactLook:
             hands.append(found.hands[e, 1:5])
             if found.edges[e, 3] == TUNNEL:
                 hands.append(found.hands[e, 5:])
-        rows = [plane.placement(h) for h in hands]
         x, y = self._pinched_at(hands[-1])
+        corners = [complex(h[2], h[3]) for h in hands]
+        corners = corners[: corners_before_pinch(corners, plane.outline.diameter)]
+        rows = [plane.placement(h) for h in hands[: len(corners)]]
         rows.append(np.array([x, y, rows[-1][2], 0.0]))
-        return np.array(rows), plane.hand.least_gap([complex(h[2], h[3]) for h in hands])
+        return np.array(rows), plane.hand.least_gap(corners)
 
     def _pinched_at(self, last: FloatArray) -> FloatArray:
         """Where the three fingers meet at the end of the way out."""

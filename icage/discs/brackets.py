@@ -31,6 +31,7 @@ from icage.tolerance import (
     TARGET_SHIFT,
     TARGET_TURN,
 )
+from icage.way_out import least_gap_on
 
 RESOLUTIONS = (16, 24, 32)
 """Segments per quadrant at which sigma_first is always looked at."""
@@ -163,7 +164,8 @@ def _bracketed(
     path, gap = cage.escape_path, cage.min_finger_gap
     way = best_outer.look.escape_path() if best_outer is not None else None
     if way is not None:
-        path, gap = np.vstack([grasps[0].placement.as_array(), way[0]]), way[1]
+        path = np.vstack([grasps[0].placement.as_array(), way[0]])
+        gap = least_gap_on(cage.hand, path)
     return replace(
         cage,
         contacts=grasps[0].contacts,

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from icage.case import Case
+from icage.case import MAX_NAME, Case
 from icage.errors import CaseError, FormatError, InputError
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
@@ -19,9 +19,6 @@ FORMAT: Final = "icage-case/1"
 
 MAX_BYTES: Final = 10_000_000
 """Largest case file read."""
-
-MAX_NAME: Final = 100
-"""Characters of a case's name."""
 
 
 def read_case(path: Path) -> Case:

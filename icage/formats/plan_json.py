@@ -41,6 +41,7 @@ def plan_document(
             for puncture in cage.punctures
         ],
         "escape_path": cage.escape_path,
+        "escape_free_at": cage.escape_free_at,
         "min_finger_gap": cage.min_finger_gap,
         "grasps": [
             {
@@ -105,7 +106,7 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
     phi_1, phi_2 = cage.hand.phi_deg
     yield (
         f"{name}: {len(cage.outline)} vertices, diameter {cage.outline.diameter:.6g} {unit}, "
-        f"hand phi = ({phi_1:.4g}, {phi_2:.4g}) deg, {_fingers(cage, unit)}"
+        f"hand (phi_1, phi_2) = ({phi_1:.4g}, {phi_2:.4g}) deg, {_fingers(cage, unit)}"
     )
     yield f"verdict      {cage.verdict.replace('_', ' ')}{f': {cage.why}' if cage.why else ''}"
     yield f"sigma_0      {cage.sigma_0:.9g} {unit}"
@@ -116,6 +117,12 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
             joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""
             yield f"puncture     {puncture.sigma:.9g} {unit}, {puncture.kind}{joins}"
         yield f"grasps       {len(cage.grasps)}, the target among them"
+        if cage.escape_path is not None:
+            yield (
+                f"escape path  {len(cage.escape_path)} rows, the object is free from row "
+                f"{cage.escape_free_at} on (counted from 0)"
+            )
+        yield "regions      in the JSON from inside and from outside: draw the inner, safe ones"
     if cage.search is not None:
         log = cage.search
         yield (

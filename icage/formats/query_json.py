@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from icage.cells.membership import VERDICTS, Answers
+from icage.cells.membership import ESCAPES, VERDICTS, Answers
 
 _SHOWN = 20
 """Rows of a summary; the rest is counted."""
@@ -42,11 +42,24 @@ def query_summary(answers: Answers, unit: str) -> Iterator[str]:
     counted = ", ".join(f"{verdicts.count(name)} {name}" for name in VERDICTS)
     yield f"{len(verdicts)} placements: {counted}"
     for row, verdict in enumerate(verdicts[:_SHOWN]):
-        margin = answers.margin[row]
-        room = "" if math.isnan(margin) else f"  margin {margin:.6g} {unit}"
-        yield f"{row + 1:>6}  {verdict:<9}  sigma {answers.sigma[row]:.6g}{room}"
+        opening = _opening(answers, row, unit)
+        yield f"{row + 1:>6}  {verdict:<9}  sigma {answers.sigma[row]:.6g} {unit}{opening}"
     if len(verdicts) > _SHOWN:
         yield f"   ...  {len(verdicts) - _SHOWN} more (all of them with --json)"
+
+
+def _opening(answers: Answers, row: int, unit: str) -> str:
+    """How much further the hand may open from there: no room for it to stand elsewhere."""
+    if answers.verdict[row] >= ESCAPES:
+        return ""
+    margin, first = float(answers.margin[row]), float(answers.target_margin[row])
+    if math.isnan(margin):
+        words = ", however far it opens the object cannot escape"
+    else:
+        words = f", may open by {margin:.6g} {unit} before the object can escape"
+    if not math.isnan(first):
+        words += f", by {first:.6g} {unit} before closing may end elsewhere"
+    return words
 
 
 def _or_null(value: float) -> float | None:

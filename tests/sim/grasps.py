@@ -70,7 +70,7 @@ def triangle() -> KnownGrasp:
 
 
 def shipped(name: str) -> KnownGrasp:
-    """A concave-corner grasp of a shipped tool with discs of 6 mm, found by ``icage grasps``."""
+    """A concave-corner grasp of a shipped tool, discs of radius 6 mm, found by ``icage grasps``."""
     contacts = {
         "pliers": [
             [62.13588638358817, 19.298875791902578],

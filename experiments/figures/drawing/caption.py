@@ -56,6 +56,7 @@ def caption_lines(cage: Cage, unit: str) -> tuple[Line, ...]:
     else:
         rows.append(_level("light", r"$\sigma_{\mathrm{max}}$", last, cage, unit))
     rows.append(Line("escape", "", "", "", r"escape puncture, at $\sigma_{\mathrm{max}}$"))
+    rows.append(Line("", "", "", "", "shaded: the regions from inside, the safe side"))
     return tuple(rows)
 
 
@@ -95,7 +96,7 @@ def draw_caption(sheet: Sheet, cage: Cage, lines: tuple[Line, ...], name: str, u
     phi_1, phi_2 = cage.hand.phi_deg
     words = rf"$\varphi$ = ({phi_1:.1f}°, {phi_2:.1f}°)"
     if cage.finger_radius > 0.0:
-        words += f",  finger radius {cage.finger_radius:.4g} {unit}"
+        words += f",  disc fingers of radius {cage.finger_radius:.4g} {unit}"
     about = sheet.axes.text(sheet.left, top, words, fontsize=8.5, color=QUIET_INK, va="baseline")
     title = sheet.axes.text(
         sheet.left, top, name, fontsize=11, fontweight="bold", color=INK, va="baseline"

@@ -13,13 +13,12 @@ from experiments.figures.drawing.numbers import significant
 from experiments.figures.drawing.object_view import ObjectView
 from experiments.figures.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
 from experiments.figures.drawing.plots import Box, Curve, Level, Plot
-from experiments.io.words import END_WORDS, VERDICT_WORDS
+from experiments.replay.filmed import Filmed
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
 
 if TYPE_CHECKING:
     from experiments.replay.clips import Clip
-    from experiments.replay.run import Run
 
 WIDTH, HEIGHT = 1280, 720
 
@@ -41,25 +40,17 @@ _TITLE_WIDTH = 560.0
 _ABOUT_WIDTH = 660.0
 """[pixel] The same of the line below it, which is not bold."""
 
-_SETS: Final = {
-    "guaranteed": "guaranteed set",
-    "rest": "rest of the cage",
-    "outside": "outside the cage",
-    "study": "study",
-}
-"""Where starts were drawn from."""
-
 
 class Page:
     """The page for the clips of one run."""
 
     def __init__(self, name: str, clips: Sequence[Clip], regions: Sequence[FingerRegion]) -> None:
         self._name, self._clips = name, clips
-        run = clips[0].run
+        cage = clips[0].filmed.cage
         self._object = ObjectView(
-            run.cage, regions, np.array([clip.placements[0] for clip in clips]), _OBJECT
+            cage, regions, np.array([clip.placements[0] for clip in clips]), _OBJECT
         )
-        self._plots = [_sigma_plot(run.cage, clip) for clip in clips]
+        self._plots = [_sigma_plot(cage, clip) for clip in clips]
         self._forces = [_force_plot(clip) for clip in clips]
 
     def draw_still(self, canvas: Canvas, number: int) -> None:
@@ -67,10 +58,10 @@ class Page:
         canvas.pixels[:] = 255
         clip = self._clips[number]
         canvas.line([[MAIN[0] + 1, 20], [MAIN[0] + 1, MAIN[1] - 12]], RULE, 1.2)
-        title = _short(clip.run.case.name)
+        title = _short(clip.filmed.grasp)
         size = min(24.0, _TITLE_WIDTH / len(title))
         canvas.text(_LEFT, 42.0, title, size, INK, bold=True)
-        about = _about(clip)
+        about = clip.filmed.about
         canvas.text(_LEFT, 70.0, about, min(17.0, _ABOUT_WIDTH / len(about)), QUIET_INK)
         self._plots[number].draw_frame(canvas)
         self._forces[number].draw_frame(canvas)
@@ -78,7 +69,7 @@ class Page:
         self._object.draw_still(canvas)
         for earlier in self._clips[:number]:
             self._object.draw_ways(canvas, earlier.placements, 0.45)
-        _draw_caption(canvas, clip.run)
+        _draw_caption(canvas, clip.filmed.cage)
 
     def draw_now(self, canvas: Canvas, number: int, frame: int) -> None:
         """What has happened up to a frame."""
@@ -90,8 +81,10 @@ class Page:
             self._forces[number].draw_curve(canvas, curve, now, 1.8)
         self._object.draw_ways(canvas, clip.placements[: frame + 1], 1.0)
         self._object.draw_fingers(canvas, clip.placements[frame])
-        if now >= 1.0:
-            _draw_badge(canvas, clip)
+        over = now >= 1.0
+        _draw_headline(canvas, clip.filmed, over)
+        if over:
+            _draw_badge(canvas, clip.filmed)
 
 
 def _sigma_plot(cage: Cage, clip: Clip) -> Plot:
@@ -115,58 +108,28 @@ def _force_plot(clip: Clip) -> Plot:
     return Plot(_FORCE, "finger forces over time", 1.0, (0.0, high))
 
 
-def _about(clip: Clip) -> str:
-    """The set that a start is from; of a recorded trial, what the planner says of its start."""
-    one = clip.run.recorded
-    if one is None:
-        return f"{_SETS[clip.run.which]}, start {clip.trial + 1} of {len(clip.run.closings)}"
-    away = one.verdict in ("target", "caged") and not one.in_cage
-    said = "in another cage" if away else VERDICT_WORDS[one.verdict]
-    return f"trial {one.index}, by plan: {said}"
-
-
-def _is_good(run: Run, outcome: str) -> bool:
-    """Whether a closing may end so: in another grasp only where others are within reach."""
-    sure = run.which == "guaranteed" if run.recorded is None else run.recorded.verdict == "target"
-    return outcome == "target" or (outcome == "other_grasp" and not sure)
-
-
-def _draw_badge(canvas: Canvas, clip: Clip) -> None:
+def _draw_badge(canvas: Canvas, filmed: Filmed) -> None:
     """Where this closing ended, in the corner of the main view."""
     words = {"target": "target grasp", "other_grasp": "another grasp"}.get(
-        clip.outcome, clip.outcome.replace("_", " ")
+        filmed.outcome, filmed.outcome.replace("_", " ")
     )
-    good = _is_good(clip.run, clip.outcome)
+    good = filmed.good
     place, text = (32.0, 46.0), f"{'✓' if good else '✗'} {words}"
     wide = canvas.text(*place, text, 19.0, PAPER, bold=True)  # how wide it is
     canvas.box((20.0, 20.0, 44.0 + wide, 58.0), GOOD if good else BAD)
     canvas.text(*place, text, 19.0, PAPER, bold=True)
 
 
-def headline(run: Run) -> tuple[str, bool]:
-    """How the closings of a run ended, in words, and whether each may end so."""
-    counts, trials = run.counts, len(run.closings)
-    fine = all(_is_good(run, name) for name, count in counts.items() if count)
-    if run.recorded is not None:
-        (outcome,) = (name for name, count in counts.items() if count)
-        return f"trial {run.recorded.index}: {END_WORDS[outcome]}", fine
-    parts = [f"{counts['target']} of {trials} closings ended in the target grasp"]
-    if counts["other_grasp"]:
-        parts.append(f"{counts['other_grasp']} in another grasp")
-    parts.append(f"{counts['escaped']} escaped")
-    parts += [
-        f"{counts[name]} {name.replace('_', ' ')}"
-        for name in ("jammed", "unmatched", "timed_out", "diverged")
-        if counts[name]
-    ]
-    return ", ".join(parts), fine
+def _draw_headline(canvas: Canvas, filmed: Filmed, over: bool) -> None:
+    """How it ended only when it has ended."""
+    text = filmed.after if over else filmed.before
+    told = filmed.before == filmed.after or over
+    ink = BAD if told and not filmed.after_good else INK
+    canvas.text(24.0, 674.0, text, 21.0, ink, bold=True)
 
 
-def _draw_caption(canvas: Canvas, run: Run) -> None:
+def _draw_caption(canvas: Canvas, cage: Cage) -> None:
     canvas.line([[20, MAIN[1] + 6], [WIDTH - 20, MAIN[1] + 6]], RULE, 1.2)
-    text, fine = headline(run)
-    canvas.text(24.0, 674.0, text, 21.0, INK if fine else BAD, bold=True)
-    cage = run.cage
     levels = [
         rf"{name} = {significant(level / cage.sigma_0, level_digits(cage))} $\sigma_0$"
         for name, level in (

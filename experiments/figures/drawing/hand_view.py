@@ -128,17 +128,20 @@ def _normal_path(scene: Scene, region: FingerRegion) -> Path:
     return as_path(tidied(normal, 1e-3))
 
 
-def window_on(scene: Scene, qpos: FloatArray, width: int, height: int) -> View:
+def window_on(
+    scene: Scene, qpos: FloatArray, width: int, height: int, *, whole: bool = False
+) -> View:
     """The window for all frames (F, 6): hand and object.
 
-    Where the hand is small on the object, only the hand with some room around it.
+    Where the hand is small on the object, only the hand with some room around it, unless the
+    ``whole`` object is wanted.
     """
-    whole = View.around(scene, qpos, width, height)
+    everything = View.around(scene, qpos, width, height)
     fingers = (qpos[:, :3, None] * scene.kinematics.directions).reshape(-1, 2)
     low, high = fingers.min(axis=0), fingers.max(axis=0)
     room = 0.9 * float((high - low).max())
     extent = max(high[1] - low[1] + room, (high[0] - low[0] + room) * height / width)
-    if whole.extent < _WORTH_CLOSING_IN * extent:
-        return whole
+    if whole or everything.extent < _WORTH_CLOSING_IN * extent:
+        return everything
     x, y = (0.5 * (low + high)).tolist()
     return View((x, y), float(extent), width, height)

@@ -48,9 +48,9 @@ def draw(study: Study) -> tuple[Figure, str | None]:
     keys = []
     for value, colour, name in (
         (study.sigma_0, ORANGE, r"$\sigma_0$"),
-        (study.found.level, PURPLE, r"$\sigma_{\mathrm{max}}$"),
+        (study.answer.sigma_max, PURPLE, r"$\sigma_{\mathrm{max}}$"),
     ):
-        if np.isfinite(value) and value < sigma.max():
+        if value is not None and value < sigma.max():
             space.contour(s, s, sigma, [value], colors=[colour], linewidths=1.3, zorder=3)
             keys.append(
                 Line2D([], [], color=colour, lw=1.3, label=f"{name} = {level(study, value)}")

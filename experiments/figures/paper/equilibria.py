@@ -17,6 +17,7 @@ from experiments.figures.paper.page import (
 )
 from experiments.figures.paper.study import Study
 from icage.arrays import FloatArray
+from icage.contact_space.boundary import Boundary
 from icage.contact_space.equilibria import pair_grasps, three_finger_kind
 from icage.contact_space.sectors import concurrency_point, sector_at
 from icage.contact_space.third_finger import turn
@@ -24,29 +25,35 @@ from icage.geometry.statics import free_fingers
 from icage.grasps.features import EDGE, balanced_triples, features_of
 
 Shown = tuple[str, FloatArray, tuple[int, ...]]
-"""Words, contacts (3, 2), free fingers (0..2)."""
+"""Words, contacts (3, 2) on the polygon of the search, free fingers (0..2)."""
 
 
 def draw(study: Study) -> tuple[Figure, str | None]:
     """A panel for every kind that exists, with the lines of force."""
-    shown = [*_of_two_fingers(study), *_of_three_fingers(study), *_punctures(study)]
+    grasps = [*_of_two_fingers(study), *_of_three_fingers(study)]
+    shown = [*grasps, *_punctures(study)]
     figure = new_sheet(2.45 * (1 + (len(shown) - 1) // 3))
     rows = 1 + (len(shown) - 1) // 3
     panels = figure.subplots(rows, 3, squeeze=False).ravel()
     for axes in panels[len(shown) :]:
         axes.set_axis_off()
     window = bounds_of(study.polygon.polygon, *(contacts for _, contacts, _ in shown))
-    for axes, letter, (words, contacts, free) in zip(panels, "abcdefghi", shown, strict=False):
-        object_panel(axes, study, window, margin=0.15)
+    finest = Boundary.of(study.finest)
+    for number, (axes, letter, (words, contacts, free)) in enumerate(
+        zip(panels, "abcdefghi", shown, strict=False)
+    ):
+        planned = number >= len(grasps)  # on the plan's polygon, not on that of the search
+        polygon, boundary = (study.finest, finest) if planned else (study.polygon, study.boundary)
+        object_panel(axes, study, window, margin=0.15, polygon=polygon)
         heading(axes, letter, words)
-        ways = _forces(axes, study, contacts, free)
+        ways = _forces(axes, study, boundary, contacts, free)
         draw_hand(axes, contacts, free=free, size=4.5, beside=ways)
     kinds = ", ".join(words for words, _, _ in shown)
     return figure, f"found: {kinds}".replace(r"$\sigma_{\mathrm{max}}$", "sigma_max")
 
 
 def _forces(
-    axes: Axes, study: Study, contacts: FloatArray, free: tuple[int, ...]
+    axes: Axes, study: Study, boundary: Boundary, contacts: FloatArray, free: tuple[int, ...]
 ) -> dict[int, FloatArray]:
     """Arrows of the contact forces, with three also dashed lines to where they meet.
 
@@ -59,7 +66,7 @@ def _forces(
         ways = {a: contacts[b] - contacts[a], b: contacts[a] - contacts[b]}
     else:
         size = 4.0 * study.polygon.diameter
-        held = [s for s in (sector_at(study.boundary, p, size) for p in contacts) if s is not None]
+        held = [s for s in (sector_at(boundary, p, size) for p in contacts) if s is not None]
         point = concurrency_point(held) if len(held) == 3 else None
         if point is None:
             return ways
@@ -174,9 +181,9 @@ def _of_another_hand(study: Study, edges: int) -> FloatArray | None:
 
 
 def _punctures(study: Study) -> list[Shown]:
-    """The last intermediate puncture and the escape."""
+    """The last intermediate puncture and the escape, both of the plan."""
     shown: list[Shown] = []
-    cage = study.cage
+    cage = study.answer
     for kind in ("intermediate", "escape"):
         of_kind = [p for p in cage.punctures if p.kind == kind]
         if of_kind:

@@ -35,4 +35,4 @@ def write_figures(
             figure, note = import_module(f"experiments.figures.paper.{name}").draw(study)
             path = out / f"{name}.{kind}"
             save(figure, path)
-        yield path, FIGURES[name] + ("" if note is None else f"; {note}")
+        yield path, "; ".join(part for part in (FIGURES[name], note, study.about) if part)

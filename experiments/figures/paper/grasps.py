@@ -83,12 +83,13 @@ def draw(study: Study) -> tuple[Figure, str | None]:
             face = PAPER if k + 1 in free else FINGERS[k]
             (dot,) = axes.plot(*point, "o", ms=small, mfc=face, mec=FINGERS[k], mew=0.6)
             dot.set_clip_path(room)
-        sigma = float(np.hypot(*(contacts[1] - contacts[0])))
+        framed = float(np.abs(contacts - study.target).max()) <= 1e-5 * study.polygon.diameter
+        sigma = study.sigma_0 if framed else float(np.hypot(*(contacts[1] - contacts[0])))
         axes.text(
             centre[0], corner[1] + cell[1] - _TITLE + 0.5, rf"$\sigma$ = {sigma:.4g}",
             ha="center", va="bottom", fontsize=6.0,
         )  # fmt: skip
-        if float(np.abs(contacts - study.target).max()) <= 1e-5 * study.polygon.diameter:
+        if framed:
             axes.add_patch(
                 Rectangle((corner[0] + 1.0, corner[1] + 0.5), cell[0] - 2.0, cell[1] - 1.0,
                           fc="none", ec=ORANGE, lw=1.2)

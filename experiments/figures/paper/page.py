@@ -31,6 +31,7 @@ from experiments.figures.drawing.palette import (
 from experiments.figures.drawing.shapes import as_path
 from experiments.figures.paper.study import Study
 from icage.formats.whole_files import whole_file
+from icage.outline import Outline
 
 FORMATS = ("svg", "pdf", "png")
 WIDTH = 7.0
@@ -92,15 +93,19 @@ def bounds_of(*things: Points | BaseGeometry) -> tuple[float, float, float, floa
 
 
 def object_panel(
-    axes: Axes, study: Study, window: tuple[float, float, float, float], margin: float = 0.05
-) -> None:
-    """The polygon in a window of the object's frame; with discs, the object itself inside it."""
+    axes: Axes, study: Study, window: tuple[float, float, float, float], margin: float = 0.05,
+    polygon: Outline | None = None,
+) -> None:  # fmt: skip
+    """The polygon in a window of the object's frame; with discs, the object itself inside it.
+
+    ``polygon``: another one than that of the search.
+    """
     axes.set_axis_off()
     axes.set_aspect("equal", anchor="W")
     side = margin * max(window[2] - window[0], window[3] - window[1])
     axes.set_xlim(window[0] - side, window[2] + side)
     axes.set_ylim(window[1] - side, window[3] + side)
-    path = as_path(study.polygon.polygon)
+    path = as_path((polygon or study.polygon).polygon)
     axes.add_patch(PathPatch(path, fc=OBJECT_FILL, ec=OBJECT_EDGE, lw=0.8, zorder=3))
     if study.segments:
         inner = as_path(study.case.outline.polygon)

@@ -36,7 +36,7 @@ the square is never smaller than the first."""
 
 
 def draw(study: Study) -> tuple[Figure, str | None]:
-    """(a)-(c) the three contact spaces; (d) the object with puncture and regions."""
+    """(a)-(c) the search in the three contact spaces; (d) the object with the plan's regions."""
     figure = new_sheet(7.2)
     panels = figure.subplots(2, 2)
     spaces = (panels[0, 0], panels[0, 1], panels[1, 0])
@@ -209,18 +209,19 @@ def _keys(study: Study) -> list[Line2D | Patch]:
 
 
 def _on_object(axes: Axes, study: Study) -> None:
-    """Caging regions from inside, target and escape puncture."""
-    cage = study.cage
+    """The plan's caging regions from inside, target and escape puncture."""
+    cage, polygon = study.answer, study.finest
     escape = next((p for p in cage.punctures if p.kind == "escape"), None)
-    hands = [study.target] + ([] if escape is None else [escape.contacts])
+    hands = [cage.contacts] + ([] if escape is None else [escape.contacts])
     shapes = [r.geometry for r in study.regions if not r.geometry.is_empty]
-    object_panel(axes, study, bounds_of(study.polygon.polygon, *hands, *shapes))
+    window = bounds_of(polygon.polygon, *hands, *shapes)
+    object_panel(axes, study, window, polygon=polygon)
     for region in study.regions:
         colour = FINGERS[region.finger - 1]
         path = as_path(tidied(region.geometry, 1e-3 * study.polygon.diameter))
         if len(path.vertices):
             axes.add_patch(PathPatch(path, fc=tint(colour, 0.35), ec=colour, lw=0.5, zorder=1))
-    draw_hand(axes, study.target)
+    draw_hand(axes, cage.contacts)
     if escape is not None:
         free = [k - 1 for k in escape.free_fingers]
         draw_hand(axes, escape.contacts, solid=False, numbers=False, free=free, width=1.0)

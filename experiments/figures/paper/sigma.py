@@ -18,88 +18,98 @@ from matplotlib.ticker import MaxNLocator
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY
 from experiments.figures.paper.page import heading, new_sheet
 from experiments.figures.paper.study import Study
-from icage.arrays import FloatArray
 from icage.contact_space.basins import escape_edge, meetings
-from icage.contact_space.kernels.explore import TUNNEL
 from icage.tolerance import DEPTH_CUT
 
 _STEPS = 12
-"""Points drawn between two seams: sigma is convex there."""
+"""Points drawn between two rows of the path: sigma is convex there."""
+
+_CLOSE = 0.03
+"""[sigma_max] Levels this close share one name."""
+
+_ASIDE = "puncture off the way (a), of the search (b)"
 
 
 def draw(study: Study) -> tuple[Figure, str | None]:
-    """(a) sigma along the way out; (b) sigma and its running maximum over the iterations."""
+    """(a) sigma along the plan's way out; (b) sigma and its running maximum over the iterations."""
     figure = new_sheet(4.8)
     along, over = figure.subplots(2, 1)
-    edges = [m.edge for m in meetings(study.found, DEPTH_CUT * study.polygon.diameter)]
-    if study.found.escaped:
-        edges.append(escape_edge(study.found))
-        count = _way(along, study, set(edges))
-        heading(along, "a", r"$\sigma$ along the way out, from the target to a pinched hand")
-    else:
-        count = 0
-        along.set_axis_off()
-        along.text(0.5, 0.5, "the hand never escapes: there is no way out", ha="center")
-    _iterations(over, study, edges)
-    heading(over, "b", "nodes in the order in which they were met, and the running maximum")
+    count = _way(along, study)
+    _iterations(over, study)
+    where = f", on {study.segments} chords a quadrant" if study.segments else ""
+    heading(over, "b", f"nodes in the order in which one search met them{where}; running maximum")
     keys = [
         Line2D([], [], color=PURPLE, lw=1.3, label=r"$\sigma$ on the way out"),
         Line2D([], [], color=SKY, marker=".", ms=4.0, lw=0.4, label=r"$\sigma$ of a node"),
         Line2D([], [], color=INK, lw=1.2, label="running maximum"),
         Line2D([], [], ls="", marker="o", ms=5.0, color=FINGERS[0], label="immobilizing grasp"),
-        Line2D([], [], ls="", marker="s", ms=5.0, color=ORANGE, label="puncture"),
+        Line2D([], [], ls="", marker="s", ms=5.0, color=ORANGE, label="puncture of the plan"),
+        Line2D([], [], ls="", marker="s", ms=4.5, mfc="none", color=ORANGE, label=_ASIDE),
     ]
-    figure.legend(handles=keys, loc="outside lower center", ncols=5)
-    return figure, f"{len(edges)} punctures, {count} of them on the way out"
+    figure.legend(handles=keys, loc="outside lower center", ncols=3)
+    levels = ", ".join(
+        f"{'escape' if p.kind == 'escape' else 'joins ' + ' '.join(map(str, p.joins))} at "
+        f"{p.sigma:.9g}"
+        for p in study.answer.punctures
+    )
+    total = len(study.answer.punctures)
+    count_words = f"{total} puncture{'' if total == 1 else 's'} of the plan"
+    unit = study.case.unit
+    return figure, f"{count_words} [{unit}]: {levels or 'none'}; {count} on the way out"
 
 
-def _way(axes: Axes, study: Study, punctures: set[int]) -> int:
-    """Sigma over the length of the path in (d, w); returns how many punctures lie on it."""
-    found = study.found
-    hands: list[FloatArray] = [study.look.target.hand]
-    at: dict[int, int] = {}
-    for e in found.way_out():
-        hands.append(found.hands[e, 1:5])
-        at[e] = len(hands) - 1
-        if found.edges[e, 3] == TUNNEL:
-            hands.append(found.hands[e, 5:9])
-    last = hands[-1].copy()
-    hands.append(_pinched(study, last))
-    lengths = [float(np.hypot(*np.abs(_moved(study, a, b)))) for a, b in pairwise(hands)]
+def _way(axes: Axes, study: Study) -> int:
+    """Sigma over the way of the fingers on the plan's escape path; how many punctures lie on it.
+
+    Drawn to where the object is free: the rest of the path only pinches the hand.
+    """
+    cage = study.answer
+    path, free = cage.escape_path, cage.escape_free_at
+    if path is None or free is None:
+        axes.set_axis_off()
+        words = "the hand never escapes" if cage.verdict == "never_escapes" else "not a cage"
+        axes.text(0.5, 0.5, f"{words}: there is no way out", ha="center")
+        return 0
+    heading(axes, "a", r"$\sigma$ along the plan's way out, until the object is free")
+    rows = path[: free + 1]
+    hands = cage.hand.fingers(rows)
+    lengths = np.hypot(*np.moveaxis(np.diff(hands, axis=0), -1, 0)).max(axis=1)
     stops = np.concatenate([[0.0], np.cumsum(lengths)])
     share = np.linspace(0.0, 1.0, _STEPS)
+    w = rows[:, 3] * np.exp(1j * rows[:, 2])
     x = np.concatenate([a + share * (b - a) for a, b in pairwise(stops)])
-    w = np.concatenate([a[2:] + share[:, None] * (b - a)[2:] for a, b in pairwise(hands)])
-    axes.plot(x, np.hypot(*w.T), color=PURPLE, lw=1.3, zorder=3)
-    sigma = np.array([np.hypot(h[2], h[3]) for h in hands])
-    axes.plot(stops[1:-1], sigma[1:-1], ".", ms=2.5, color=PURPLE, zorder=4)
-    axes.plot(0.0, sigma[0], "o", ms=6.0, color=FINGERS[0], mec="white", zorder=5, clip_on=False)
-    here = sorted(punctures & at.keys(), key=lambda e: stops[at[e]])
-    for e in here:
-        axes.plot(stops[at[e]], sigma[at[e]], "s", ms=6.0, color=ORANGE, mec="white", zorder=5)
+    sigma = np.abs(np.concatenate([a + share * (b - a) for a, b in pairwise(w)]))
+    axes.plot(x, sigma, color=PURPLE, lw=1.3, zorder=3)
+    axes.plot(stops[1:], rows[1:, 3], ".", ms=2.5, color=PURPLE, zorder=4)
+    axes.plot(
+        0.0, cage.sigma_0, "o", ms=6.0, color=FINGERS[0], mec="white", zorder=5, clip_on=False
+    )
+    # With discs the path keeps clear of the arcs' tangents, the punctures lie on their chords.
+    near = max(study.near, 0.05 * cage.finger_radius)
+    count = 0
+    for puncture in cage.punctures:
+        off = np.hypot(*np.moveaxis(hands - puncture.contacts, -1, 0)).max(axis=1)
+        on_way = bool(off.min() <= near)
+        at = stops[int(np.argmin(off))] if on_way else 0.02 * stops[-1]
+        face = ORANGE if on_way else "none"
+        edge, size = ("white", 6.0) if on_way else (ORANGE, 5.0)
+        axes.plot(at, puncture.sigma, "s", ms=size, mfc=face, mec=edge, zorder=5, clip_on=False)
+        count += on_way
     _levels(axes, study)
     axes.set_xlim(0.0, stops[-1])
     axes.set_xlabel(f"way of the fingers, largest of the three [{study.case.unit}]", labelpad=1.0)
-    return len(here)
+    return count
 
 
-def _moved(study: Study, a: FloatArray, b: FloatArray) -> FloatArray:
-    """The longest move of a finger between two hands, as a vector (2,)."""
-    moves = study.plane.contacts(b) - study.plane.contacts(a)
-    return moves[int(np.argmax(np.hypot(*moves.T)))]
+def _iterations(axes: Axes, study: Study) -> None:
+    """The log of the search; punctures where their edge was crossed.
 
-
-def _pinched(study: Study, last: FloatArray) -> FloatArray:
-    """The pinched hand at the end of the way out."""
-    path = study.look.escape_path()
-    assert path is not None
-    x, y = path[0][-1, :2] - study.plane.origin
-    return np.array([x, y, 0.0, 0.0])
-
-
-def _iterations(axes: Axes, study: Study, punctures: list[int]) -> None:
-    """The log of the search; punctures where their edge was crossed."""
+    With discs the search is on one coarse polygon: its punctures are not the plan's, and hollow.
+    """
     found = study.found
+    punctures = [m.edge for m in meetings(found, DEPTH_CUT * study.polygon.diameter)]
+    if found.escaped:
+        punctures.append(escape_edge(found))
     steps = found.log().iterations
     sigma = np.array([step.sigma for step in steps])
     axes.plot(sigma, ".-", ms=2.5, lw=0.3, color=SKY, zorder=2)
@@ -112,7 +122,8 @@ def _iterations(axes: Axes, study: Study, punctures: list[int]) -> None:
     axes.plot(rows, sigma[rows], "o", ms=5.0, color=FINGERS[0], mec="white", ls="", zorder=5)
     at = _iteration_of_edge(study)
     rows = sorted({at[e] for e in punctures})
-    axes.plot(rows, sigma[rows], "s", ms=5.0, color=ORANGE, mec="white", ls="", zorder=5)
+    face, edge = ("none", ORANGE) if study.segments else (ORANGE, "white")
+    axes.plot(rows, sigma[rows], "s", ms=5.0, mfc=face, mec=edge, ls="", zorder=5)
     _levels(axes, study)
     axes.set_xlim(-0.01 * len(sigma), 1.01 * len(sigma))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -136,21 +147,23 @@ def _iteration_of_region(study: Study) -> list[int]:
 
 
 def _levels(axes: Axes, study: Study) -> None:
-    """Lines at sigma_0, sigma_first, sigma_max with names at the right."""
-    found = study.found
-    names = {study.sigma_0: r"$\sigma_0$"}
-    first, last = study.look.sigma_first, found.level
-    close = np.isfinite(last) and abs(last - first) < 0.05 * (last - study.sigma_0)
-    if np.isfinite(last):
+    """Lines at the plan's sigma_0, sigma_first, sigma_max with names at the right."""
+    cage = study.answer
+    names: dict[float, str] = {cage.sigma_0: r"$\sigma_0$"}
+    first, last = cage.sigma_first, cage.sigma_max
+    close = last is not None and first is not None and abs(last - first) < _CLOSE * last
+    if last is not None:
         names[last] = r"$\sigma_{\mathrm{max}}$"
         if first != last and close:
             names[last] = r"$\sigma_{\mathrm{first}}, \sigma_{\mathrm{max}}$"
-    if np.isfinite(first) and first != last and not close:
-        names[first] = r"$\sigma_{\mathrm{first}}$"
+    if first is not None and first != last:
+        names[first] = "" if close else r"$\sigma_{\mathrm{first}}$"
     axes.set_ylim(bottom=0.0)
     below = None
     for value, name in sorted(names.items()):
         axes.axhline(value, color=QUIET_INK, lw=0.6, ls=(0, (4, 3)), zorder=1)
+        if not name:
+            continue
         tight = below is not None and value - below < 0.09 * axes.get_ylim()[1]
         below = value
         shift = 5.0 if tight else (-5.0 if _next(names, value, axes) else 0.0)

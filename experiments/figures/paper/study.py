@@ -1,4 +1,9 @@
-"""What all figures of one case share: polygon, hand, search, cage; each computed once."""
+"""What all figures of one case share: the plan, and one polygon with its search; computed once.
+
+Levels, punctures and regions are the plan's own, those that ``icage plan`` prints. What only a
+search of point fingers on one polygon has (rectangles, nodes, the graph) is drawn from that; with
+discs the polygon is coarse and its own levels are others, so they are never named.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +37,11 @@ TOUCH = 1e-7
 
 @dataclass(frozen=True)
 class Study:
-    """A case as its figures see it; with discs, point fingers on the inner offset polygon."""
+    """A case as its figures see it.
+
+    ``polygon`` and ``look`` are of point fingers: on the object, or with discs on an inner offset
+    polygon of ``segments`` chords a quadrant (0 for points).
+    """
 
     case: Case
     polygon: Outline
@@ -77,10 +86,31 @@ class Study:
         """The hand's shape."""
         return self.plane.hand
 
+    @cached_property
+    def answer(self) -> Cage:
+        """The plan's own cage of the case, discs and all."""
+        return plan(self.case.outline, self.case.contacts, self.case.finger_radius)
+
     @property
     def sigma_0(self) -> float:
-        """[unit]."""
-        return self.look.target.sigma_0
+        """[unit] The plan's."""
+        return self.answer.sigma_0
+
+    @property
+    def finest(self) -> Outline:
+        """The polygon that the plan's punctures lie on; with discs much finer than ``polygon``."""
+        work = self.answer.work
+        return self.polygon if work is None else work.search.terrain.outline
+
+    @property
+    def about(self) -> str | None:
+        """With discs, what else is drawn but the plan's levels; None for points."""
+        if not self.segments:
+            return None
+        return (
+            f"drawn for point fingers on one polygon, the inner offset with {self.segments} chords "
+            "a quadrant; sigma_0, sigma_first and sigma_max are the plan's"
+        )
 
     @property
     def near(self) -> float:
@@ -99,16 +129,15 @@ class Study:
 
     @cached_property
     def cage(self) -> Cage:
-        """The cage by the search, point fingers on the polygon."""
+        """The cage by the search, point fingers on ``polygon``: with discs not the plan's."""
         return self.look.cage(self.target, self.polygon, 0.0)
 
     @cached_property
     def regions(self) -> tuple[FingerRegion, ...]:
-        """Caging regions on the polygon, from inside; by the cells' method."""
-        cage = plan(self.polygon, self.target)
-        if cage.verdict == "not_a_cage":
+        """The plan's caging regions, from inside."""
+        if self.answer.verdict == "not_a_cage":
             return ()
-        return tuple(r for r in caging_regions(cage, gap=3e-3) if r.bound == "inner")
+        return tuple(r for r in caging_regions(self.answer, gap=3e-3) if r.bound == "inner")
 
     @cached_property
     def grasps(self) -> list[FloatArray]:

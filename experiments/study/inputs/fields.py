@@ -8,7 +8,7 @@ HELP: Final = {
     "case": "a case file, a shipped object's name, or a study's TOML file",
     "grasp": "which of a shipped object's grasps, from 1 (default 1)",
     "trials": "how many (default 1000); saltelli rounds its base points up to a power of two",
-    "seed": "of everything that is drawn (default 0)",
+    "seed": "seed of everything that is drawn (default 0)",
     "starts": "where the hand is meant to stand: guaranteed (uniform in the guaranteed set), cage "
     "(uniform in the whole cage) or nominal (one placement); default: nominal if placement varies, "
     "else guaranteed",
@@ -21,11 +21,11 @@ HELP: Final = {
     "default), or skip them; counted either way",
     "until_half_width": "stop when the 95 %% interval of the target rate is this narrow: half of "
     "it at most this; looked at every 500 trials; for random sampling only",
-    "position_tolerance": "an end this near a grasp, in diameters (default 0.005), and ...",
-    "angle_tolerance": "... turned by no more than this, in rad (default 0.02), is in it",
+    "position_tolerance": "an end counts as in a grasp within this, in diameters (default 0.005)",
+    "angle_tolerance": "... and turned by no more than this, in rad (default 0.02)",
     "max_time": "in s, a closing still moving then has timed out (default 5; a slower hand has as "
     "much longer)",
-    "time_step": "of the engine, in s (default 0.001)",
+    "time_step": "time step of the engine, in s (default 0.001)",
     "vary": "an uncertain input, e.g. friction=0:0.8 or place_xy=normal:2mm; `--variables` lists "
     "them; as often as there are inputs",
 }

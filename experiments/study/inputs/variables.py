@@ -108,10 +108,11 @@ VARIABLES: Final = {
         Variable("finger_radius", "hand", "length", 0.0, -1.0, 1.0,
                  "error of the finger radius; a disc must be left", True, geometry=True),
         Variable("phi_1", "hand", "angle", 0.0, -0.5, 0.5,
-                 "error of the hand's angle at finger 1; a triangle must be left", True,
-                 geometry=True),
+                 "error of phi_1, the direction from finger 1 to finger 3 against that from finger "
+                 "1 to finger 2; a triangle must be left", True, geometry=True),
         Variable("phi_2", "hand", "angle", 0.0, -0.5, 0.5,
-                 "error of the hand's angle at finger 2; a triangle must be left", True,
+                 "error of phi_2, the direction from finger 2 to finger 3 against that from finger "
+                 "1 to finger 2 (outside the triangle); a triangle must be left", True,
                  geometry=True),
         Variable("linkage_play", "hand", "length", 0.0, 0.0, 0.1,
                  "how far a finger yields under the closing force", geometry=True),

@@ -25,7 +25,8 @@ from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
 FRICTION_TIME: Final = 1.0
-"""[s] Jammed objects creep and never count as still: the ends after this and after twice this."""
+"""[s] Jammed objects creep, faster than a frictionless closing that counts as still: the ends are
+looked at after this and after twice this. (A study has a rule of its own for such objects.)"""
 
 
 def tables(name: str, trials: int, which: StartSet, seed: int = 0) -> Iterator[str]:

@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 from experiments.study.ready.__main__ import OUT, ready
 from experiments.study.report.names import percent
 from experiments.study.report.results_md import table
+from experiments.study.report.summary import NEAR_ANGLE, NEAR_POSITION
 
 
 def found_in(folder: Path) -> dict[str, dict[str, Any]]:
@@ -127,7 +128,7 @@ def main(folder: str = str(OUT)) -> None:
     documents = found_in(Path(folder))
     for lines in (
         overview(documents), by_value(documents, "friction"), by_value(documents, "speed"),
-        nearby(Path(folder), "friction", "friction", 0.02, 0.1),
+        nearby(Path(folder), "friction", "friction", NEAR_POSITION, NEAR_ANGLE),
         by_two(Path(folder), "tilt", "tilt", "table_friction"),
     ):  # fmt: skip
         print("\n".join(lines))

@@ -45,12 +45,12 @@ def _meant(document: Mapping[str, Any]) -> str:
 
 
 def _even(sampling: str) -> str:
-    """What the intervals are, where the inputs are not independent draws."""
+    """What the intervals are, and what they are not where the draws are not independent."""
     if sampling == "random":
-        return ""
+        return " Intervals of rates are Wilson's at 95 %."
     return (
-        " The intervals are Wilson's, made for independent draws; Sobol points fill the inputs "
-        "more evenly, so they are as a rule wider than need be."
+        " Intervals of rates are Wilson's at 95 %, made for independent draws; Sobol points fill "
+        "the inputs more evenly, so they are as a rule wider than need be."
     )
 
 

@@ -30,8 +30,8 @@ WORDS: Final = {
     "outline_scale": "object's size / planned",
     "outline_noise": "displaced boundary, RMS",
     "finger_radius": "error of the finger radius",
-    "phi_1": "error of the angle at finger 1",
-    "phi_2": "error of the angle at finger 2",
+    "phi_1": "error of phi_1",
+    "phi_2": "error of phi_2",
     "linkage_play": "play of the linkage",
     "speed": "closing speed / usual",
     "force": "motor force / usual",
@@ -40,7 +40,7 @@ WORDS: Final = {
 """Every variable, and the group of Saltelli's design that has the placement in it."""
 
 
-_COUNTS: Final = ("trials", "closed", "target")
+_COUNTS: Final = ("trials", "closed", "target", "near_target")
 """Of a bin."""
 
 
@@ -87,7 +87,7 @@ def merged(bins: Sequence[Mapping[str, Any]], most: int) -> list[Mapping[str, An
 
 
 def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    trials, closed, target = (sum(one[key] for one in bins) for key in _COUNTS)
+    trials, closed, target, near = (sum(one[key] for one in bins) for key in _COUNTS)
     return {
         "low": bins[0]["low"],
         "high": bins[-1]["high"],
@@ -95,5 +95,6 @@ def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "trials": trials,
         "closed": closed,
         "target": target,
+        "near_target": near,
         "rate_95": list(wilson(target, closed)) if closed else None,
     }

@@ -37,6 +37,7 @@ def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
         [(k.replace("_", " "), str(found["outcomes"][k]), _OUTCOMES[k]) for k in _OUTCOMES
          if found["outcomes"][k]],
     )  # fmt: skip
+    yield from _near(found, document)
     yield from _verdicts(found, any(VARIABLES[name].geometry for name in config["vary"]))
     for name, one in found["variables"].items():
         yield from _variable(name, one, document["unit"])
@@ -78,8 +79,25 @@ def _closed(found: Mapping[str, Any]) -> Iterator[str]:
     if not found["failed"]:
         yield (
             f"None of {closed} {independent}closings failed (ended elsewhere), so at 95 % the rate "
-            f"of failures among closings is below {percent(rate_upper(0, closed))}."
+            f"of failures among closings is below {percent(rate_upper(0, closed))} (exact "
+            "one-sided bound, Clopper-Pearson)."
         )
+
+
+def _near(found: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:
+    """How many ended near the target, and what near is."""
+    if not found["closed"]:
+        return
+    near, unit = found["near_target"], document["unit"]
+    length = near["position"] * document["diameter"]
+    one = found["independent"]
+    yield ""
+    yield (
+        f"Near the target ended {near['independent']} of {one['closed']} closings: within "
+        f"{near['position']:g} diameters of the planned object ({length:.3g} {unit}, the "
+        f"displacement of its centroid in the hand) and {near['angle']:g} rad of it, whatever "
+        "their outcome is called; those in the target are among them."
+    )
 
 
 def _verdicts(found: Mapping[str, Any], other_shapes: bool) -> Iterator[str]:
@@ -130,12 +148,13 @@ def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
     factor, shown = display(VARIABLES[name], unit)
     yield from table(
         (f"{name} [{shown}]" if shown else name, "trials", "closed", "target", "rate of closed",
-         "95 %"),
+         "95 %", "near the target"),
         [
             (
                 _range(factor, bin_),
                 *(str(bin_[key]) for key in ("trials", "closed", "target")),
                 *_rate(bin_),
+                str(bin_["near_target"]),
             )
             for bin_ in merged(one["bins"], LONGEST)
         ],
@@ -162,7 +181,8 @@ def _indices(found: Mapping[str, Any]) -> Iterator[str]:
         return
     yield (
         f'Sobol indices of "ended in the target", {indices["base"]} base points: the share of its '
-        "variance that an input explains alone (first order), and with all others (total)."
+        "variance that an input explains alone (first order), and with all others (total), with "
+        "95 % bootstrap intervals."
     )
     yield ""
     yield from table(

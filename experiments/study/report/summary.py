@@ -33,19 +33,35 @@ LISTED: Final = 50
 """Failed closings named in ``study.json``; the table has all."""
 
 
-def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, Any]:
-    """The findings, as they stand in ``study.json``."""
+NEAR_POSITION: Final = 0.02
+"""[diameter] An end this near the target is near it, ..."""
+
+NEAR_ANGLE: Final = 0.1
+"""[rad] ... if it is turned no further: what is lost of a grasp by friction is often no more."""
+
+
+def summary(
+    config: StudyConfig, design: Design, table: pa.Table, diameter: float
+) -> dict[str, Any]:
+    """The findings, as they stand in ``study.json``; ``diameter`` of the planned object, [unit]."""
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
     count = len(reached)
     closed = ~np.isin(outcomes, list(NOT_CLOSED))
     alone = independent(design, count)
+    near = closed & _near(table, diameter)
     failed = np.flatnonzero(closed & ~reached)
     found: dict[str, Any] = {
         "trials": count,
         "outcomes": {name: int((outcomes == name).sum()) for name in STUDY_OUTCOMES},
         "closed": int(closed.sum()),
         **_rates(reached[alone], closed[alone]),
+        "near_target": {
+            "position": NEAR_POSITION,
+            "angle": NEAR_ANGLE,
+            "trials": int(near.sum()),
+            "independent": int(near[alone].sum()),
+        },
         "grasps": _grasps(table, outcomes),
         "verdicts": list(_verdicts(table, outcomes, closed)),
         "position_error_max": _of(table, "position_error", reached, np.max),
@@ -59,13 +75,23 @@ def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, A
         "failed_trials": table["trial"].to_numpy()[failed[:LISTED]].tolist(),
         "variables": {
             name: _variable(config, name, table[name].to_numpy()[alone], reached[alone],
-                            closed[alone])
+                            closed[alone], near[alone])
             for name in design.names
         },
     }  # fmt: skip
     if config.sampling == "saltelli":
         found["indices"] = _indices(design, reached)
     return found
+
+
+def _near(table: pa.Table, diameter: float) -> BoolArray:
+    """(n,) whether a trial ended near the target, whatever its outcome is called."""
+    off, turned = (
+        np.asarray(table[name].to_numpy(zero_copy_only=False), dtype=np.float64)
+        for name in ("position_error", "angle_error")
+    )
+    with np.errstate(invalid="ignore"):  # null where nothing was closed
+        return (off <= NEAR_POSITION * diameter) & (turned <= NEAR_ANGLE)
 
 
 def _rates(reached: BoolArray, closed: BoolArray) -> dict[str, Any]:
@@ -119,8 +145,9 @@ def _of(table: pa.Table, name: str, rows: BoolArray, how: Any) -> float | None:
 
 
 def _variable(
-    config: StudyConfig, name: str, values: FloatArray, reached: BoolArray, closed: BoolArray
-) -> dict[str, Any]:
+    config: StudyConfig, name: str, values: FloatArray, reached: BoolArray, closed: BoolArray,
+    near: BoolArray,
+) -> dict[str, Any]:  # fmt: skip
     """Rate of the target over the values (n,) of one variable: per grid value, else per decile."""
     if config.vary[name].kind == "grid":
         groups = [values == v for v in sorted(set(config.vary[name].parameters))]
@@ -128,10 +155,12 @@ def _variable(
         rank = np.empty(len(values), dtype=np.int64)
         rank[np.argsort(values, kind="stable")] = np.arange(len(values))
         groups = [rank * BINS // max(len(values), 1) == k for k in range(BINS)]
-    return {"bins": [_bin(values[g], reached[g], closed[g]) for g in groups if g.any()]}
+    return {"bins": [_bin(values[g], reached[g], closed[g], near[g]) for g in groups if g.any()]}
 
 
-def _bin(values: FloatArray, reached: BoolArray, closed: BoolArray) -> dict[str, Any]:
+def _bin(
+    values: FloatArray, reached: BoolArray, closed: BoolArray, near: BoolArray
+) -> dict[str, Any]:
     shut, target = int(closed.sum()), int(reached.sum())
     return {
         "low": float(values.min()),
@@ -140,6 +169,7 @@ def _bin(values: FloatArray, reached: BoolArray, closed: BoolArray) -> dict[str,
         "trials": len(values),
         "closed": shut,
         "target": target,
+        "near_target": int(near.sum()),
         "rate_95": list(wilson(target, shut)) if shut else None,
     }
 

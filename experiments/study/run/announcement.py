@@ -27,14 +27,15 @@ def announcement(study: Study, document: Mapping[str, Any]) -> str:
 
 
 def nominal_words(document: Mapping[str, Any]) -> str:
-    """The planner's verdict of the nominal placement, and its margin."""
+    """The planner's verdict of the nominal placement, and how far the hand may open from there."""
     one = document["nominal"]
     words = VERDICT_WORDS[one["verdict"]]
     if one["verdict"] in ("escapes", "collision"):
         return words
     if one["margin"] is None:
         return f"{words}; it escapes at no opening"
-    return f"{words}, margin {number(one['margin'])} {document['unit']}"
+    opening = f"{number(one['margin'])} {document['unit']}"
+    return f"{words}; the hand may open by {opening} before the object can escape"
 
 
 def warning(document: Mapping[str, Any]) -> str | None:

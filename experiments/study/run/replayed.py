@@ -14,16 +14,15 @@ import pyarrow.parquet as pq
 
 from experiments.io.progress import stage_bar
 from experiments.io.versions import versions
+from experiments.replay.filmed import filmed_alone
 from experiments.replay.recorded import RecordingError
-from experiments.replay.run import Recorded, Replay, Run
 from experiments.study.run.document import study_of
 from experiments.study.run.folder import SHARDS, TRIALS, read_document
 from experiments.study.run.rows import table_of
 from experiments.study.run.shard import Ran, Study, run_trials, worlds_of
 from icage.arrays import FloatArray
 from icage.formats.whole_files import whole_file
-from icage.sampling import Starts
-from sim.closing.judge import OUTCOMES, Verdicts
+from sim.closing.judge import OUTCOMES
 from sim.closing.varied import Worlds, own_model, settings
 from sim.world.scene import Scene
 
@@ -93,7 +92,7 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
         The trial was never closed.
     """
     from experiments.figures.plan import figure_regions
-    from experiments.replay.video import film
+    from experiments.replay.video import film_alone
 
     study, ran = done.study, done.ran
     if not len(ran.done):
@@ -102,19 +101,18 @@ def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None
         )
     variant = ran.variants[int(ran.which[0])]
     scene = filmed_scene(variant.scene, worlds_of(ran.values, ran.starts, ran.sizes))
-    case, closings = study.case, ran.closings.closings
-    errors = ran.errors
-    verdicts = Verdicts(
-        ran.outcome, ran.grasp_id, errors[:, 0], errors[:, 1], errors[:, 0], errors[:, 1]
+    one = filmed_alone(
+        done.index,
+        study.case.name,
+        study.cage,
+        scene,
+        ran.closings.closings.start[0],
+        OUTCOMES[int(ran.outcome[0])],
+        done.now["verdict"],
+        done.now["in_cage"],
     )
-    recorded = Recorded(done.index, done.now["verdict"], done.now["in_cage"])
-    run = Run(
-        case, study.cage, study.cage, scene, "study", Starts(closings.start, 1), closings, verdicts,
-        recorded,
-    )  # fmt: skip
-    regions = {case.name: figure_regions(study.cage)}
     with stage_bar() as report, whole_file(path) as part:
-        film(Replay((run,), study.config.seed), case.name, regions, part, report, camera)
+        film_alone(one, figure_regions(study.cage), part, report, camera)
 
 
 def filmed_scene(scene: Scene, worlds: Worlds) -> Scene:

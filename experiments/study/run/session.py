@@ -155,7 +155,7 @@ def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
         table, length = run_study(
             study, folder, backend, session.shard, lambda done, whole: bar("trials", done, whole)
         )
-    found = summary(study.config, study.design, table)
+    found = summary(study.config, study.design, table, study.case.outline.diameter)
     stopped = {"early": length.early, "at": length.at, "why": length.why}
     document = {**session.document, "finished": True, "stopped": stopped, "found": found}
     write_document(document, folder.path)

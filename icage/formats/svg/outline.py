@@ -74,8 +74,8 @@ def read_svg(
             raise FormatError(f"width is {width:g}; a finite number above 0 is needed")
         _relative(tolerance, width)
     try:
-        content, has_size = drawable(read_bytes(path, MAX_BYTES, "an SVG drawing"))
-        if width is None and not has_size:
+        content, own_unit = drawable(read_bytes(path, MAX_BYTES, "an SVG drawing"))
+        if width is None and own_unit is None:
             raise FormatError("the drawing states no size in mm, cm or in; a width is needed")
         shapes = list(drawn_shapes(content))
         drawn = _size(_corners(shapes))
@@ -89,6 +89,20 @@ def read_svg(
         return Outline((ring - low_corner) * (wide / (ring.max(axis=0) - low_corner).max()))
     except InputError as error:
         raise type(error)(str(error) if str(path) in str(error) else f"{path}: {error}") from error
+
+
+def stated_unit(path: Path) -> Unit | None:
+    """Unit to answer in for a drawing that states its size: cm for cm, mm for every other length.
+
+    None if it states none. Raises what ``read_svg`` raises for a file that is no drawing.
+    """
+    try:
+        own_unit = drawable(read_bytes(path, MAX_BYTES, "an SVG drawing"))[1]
+    except InputError as error:
+        raise type(error)(str(error) if str(path) in str(error) else f"{path}: {error}") from error
+    if own_unit is None:
+        return None
+    return "cm" if own_unit == "cm" else "mm"
 
 
 def _relative(tolerance: float | None, width: float) -> float:

@@ -29,10 +29,11 @@ _LENGTH: Final = re.compile(r"[\d.eE+-]+\s*(mm|cm|in|pt|pc|q)", re.IGNORECASE)
 _CUTTING: Final = ("clip-path", "mask")
 
 
-def drawable(content: bytes) -> tuple[bytes, bool]:
+def drawable(content: bytes) -> tuple[bytes, str | None]:
     """The SVG document reduced to shapes, groups and what positions them.
 
-    Also whether it says how large it is: a width or height in a unit of length, not in pixels.
+    Also the unit in which it says how large it is (of its width, else of its height: mm, cm, in,
+    pt, pc, q), None if it says so in pixels or not at all.
 
     Raises
     ------
@@ -45,7 +46,8 @@ def drawable(content: bytes) -> tuple[bytes, bool]:
     _reduce(root)
     _bound_uses(root)
     sizes = (root.get("width", ""), root.get("height", ""))
-    return tostring(root), any(_LENGTH.fullmatch(size.strip()) for size in sizes)
+    stated = (_LENGTH.fullmatch(size.strip()) for size in sizes)
+    return tostring(root), next((size[1].lower() for size in stated if size), None)
 
 
 def _parse(content: bytes) -> Element:

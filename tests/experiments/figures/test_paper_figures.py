@@ -26,6 +26,7 @@ from experiments.figures.paper.study import Study
 from experiments.figures.paper.tunnel import NONE
 from icage.contact_space.kernels.explore import SEAM
 from icage.formats.case_json import read_case
+from icage.planner import plan
 from models import CASES
 from tests.experiments.commands.runner import here
 
@@ -158,6 +159,42 @@ def test_the_way_out_in_contact_space_joins_target_and_pinch():
             s = np.array(way)
             assert s.min() >= -1e-9
             assert s.max() <= study.boundary.perimeter + 1e-9
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        CASES / "disc_hammer.json",
+        CASES / "cross_multi.json",
+        CASES.parent / "objects" / "pliers" / "cases" / "4_with_rest.json",
+    ],
+    ids=lambda path: path.stem,
+)
+def test_levels_and_punctures_drawn_are_those_of_the_plan(path: Path):
+    case = read_case(path)
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    with matplotlib.rc_context(SETTINGS):
+        figure, note = sigma.draw(Study.of(case))
+    wanted = {level for level in (cage.sigma_0, cage.sigma_first, cage.sigma_max) if level}
+    along, over = figure.axes
+    for axes in (along, over):
+        across = [np.asarray(line.get_ydata()) for line in axes.lines]
+        drawn = {float(y[0]) for y, line in zip(across, axes.lines, strict=True)
+                 if len(y) == 2 and y[0] == y[1] and line.is_dashed()}  # fmt: skip
+        assert drawn == wanted
+    squares = [line for line in along.lines if line.get_marker() == "s"]
+    assert [float(line.get_ydata()[0]) for line in squares] == [p.sigma for p in cage.punctures]
+    assert note is not None
+    assert all(f"{p.sigma:.9g}" in note for p in cage.punctures)
+
+
+def test_with_discs_the_caption_says_what_is_drawn(tmp_path: Path, capsys: Any):
+    case = str(CASES / "disc_hammer.json")
+    result = here(capsys, "figures", case, "--out", str(tmp_path), "--only", "tunnel")
+    assert "one polygon, the inner offset with 2 chords a quadrant" in result.out
+    assert "sigma_max are the plan's" in result.out
+    result = here(capsys, "figures", GOLDEN, "--out", str(tmp_path), "--only", "tunnel")
+    assert "chords" not in result.out
 
 
 def test_places_on_the_seam_are_shown_twice():

@@ -93,7 +93,8 @@ def test_the_caption_says_what_the_plan_says():
     text = " ".join(f"{line.symbol} {line.value} {line.ratio} {line.words}" for line in lines)
     for level in (cage.sigma_0, cage.sigma_first, cage.sigma_max):
         assert f"{significant(level)} mm" in text
-    assert [line.key for line in lines] == ["target", "dark", "light", "escape"]
+    assert [line.key for line in lines] == ["target", "dark", "light", "escape", ""]
+    assert lines[-1].words == "shaded: the regions from inside, the safe side"
 
 
 @pytest.mark.parametrize(

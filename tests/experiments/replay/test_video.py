@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,14 @@ from numpy.typing import NDArray
 from experiments.figures.drawing import film_page
 from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.film_page import MAIN
+from experiments.figures.drawing.hand_view import window_on
 from experiments.figures.drawing.plots import Level, Plot
 from experiments.io.words import END_WORDS
 from experiments.replay import clips, video
 from experiments.replay.files import VIDEO, regions_by_grasp
-from experiments.replay.run import Recorded, Replay, replay
-from experiments.replay.video import SIZE, film
+from experiments.replay.filmed import Filmed, filmed_alone, headline
+from experiments.replay.run import Replay, replay
+from experiments.replay.video import SIZE, film, film_alone
 from sim.camera.renderer import find_backend
 from sim.closing.judge import OUTCOMES
 from tests.experiments.commands.runner import here
@@ -102,10 +103,11 @@ def test_a_renderer_that_fails_is_replaced(
 def test_clips_show_the_trials_that_were_counted(done: Replay):
     (run,) = done.runs
     shown = clips.clips(done)
-    assert [clip.trial for clip in shown] == [0, 1, 2]
-    for clip in shown:
-        assert clip.outcome == "target"
-        assert clip.placements[0] == pytest.approx(run.starts.placements[clip.trial], abs=1e-9)
+    assert len(shown) == 3
+    for trial, clip in enumerate(shown):
+        assert clip.filmed.outcome == "target"
+        assert clip.filmed.about == f"guaranteed set, start {trial + 1} of 3"
+        assert clip.placements[0] == pytest.approx(run.starts.placements[trial], abs=1e-9)
         assert clip.placements[-1, 3] == pytest.approx(run.cage.sigma_0, rel=5e-3)
         assert np.diff(clip.placements[:, 3]).max() <= 1e-3 * run.cage.sigma_0
         first, last = clip.moving
@@ -115,43 +117,75 @@ def test_clips_show_the_trials_that_were_counted(done: Replay):
         assert (clip.forces[-1] > 0.1).all()
 
 
-def one_trial(done: Replay, outcome: str, recorded: Recorded | None) -> clips.Clip:
-    """The first clip, as if it had ended so."""
+def one_trial(done: Replay, outcome: str, verdict: str = "target", in_cage: bool = True) -> Filmed:
+    """The first closing, as if it were trial 4 and had ended so."""
     (run,) = done.runs
-    code = np.array([OUTCOMES.index(outcome)])
-    closings = replace(run.closings, **{
-        one.name: getattr(run.closings, one.name)[:1] for one in fields(run.closings)
-    })  # fmt: skip
-    verdicts = replace(run.verdicts, outcome=code)
-    run = replace(run, which="study", closings=closings, verdicts=verdicts, recorded=recorded)
-    return replace(clips.clips(done)[0], run=run)
+    start = run.starts.placements[0]
+    return filmed_alone(4, "T", run.cage, run.scene, start, outcome, verdict, in_cage)
 
 
 @pytest.mark.parametrize("outcome", OUTCOMES)
 def test_a_film_of_one_trial_tells_that_trial(done: Replay, outcome: str):
-    clip = one_trial(done, outcome, Recorded(4, "target", True))
-    words, fine = film_page.headline(clip.run)
-    assert words == f"trial 4: {END_WORDS[outcome]}"
-    assert fine == (outcome == "target")
-    assert film_page._about(clip) == "trial 4, by plan: closing can end only in the target"
+    one = one_trial(done, outcome)
+    assert (one.before, one.after) == ("trial 4", f"trial 4: {END_WORDS[outcome]}")
+    assert one.good == one.after_good == (outcome == "target")
+    assert one.about == "trial 4, by plan: closing can end only in the target"
 
 
 def test_a_film_of_one_trial_knows_what_the_planner_said(done: Replay):
-    clip = one_trial(done, "other_grasp", Recorded(7, "caged", False))
-    assert film_page._about(clip) == "trial 7, by plan: in another cage"
-    assert film_page.headline(clip.run)[1]
+    one = one_trial(done, "other_grasp", "caged", in_cage=False)
+    assert one.about == "trial 4, by plan: in another cage"
+    assert one.good
 
 
-def test_no_closing_is_called_lost(done: Replay):
-    clip = one_trial(done, "jammed", None)
+def test_a_film_of_one_trial_tells_its_end_at_the_end_and_holds_the_object(
+    done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """The words below the picture change once, when the hand stands still, and the badge comes."""
+    for module in (clips, video):
+        monkeypatch.setattr(module, "FPS", 5)
+    one = one_trial(done, "target")
+    clip = clips.clip_alone(one)
+    path = tmp_path / "trial.mp4"
+    film_alone(one, (), path, silent, camera=False)
+    _, pictures = frames_of(path)
+    frames = np.array([p.copy() for p in pictures]).astype(int)
+    words = frames[:, MAIN[1] + 20 : MAIN[1] + 50, 110:600]  # right of "trial 4"
+    corner = frames[:, 20:58, 20:44]
+    first_end = int((clip.time < 1.0).sum())
+    assert 0 < first_end < len(frames) - 1
+    assert words[: first_end - 1].min() > 200, "the end is told before it came"
+    assert words[first_end + 1 :].min() < 100
+    green = (corner[..., 1] - corner[..., 0]).max(axis=(1, 2))
+    assert green[: first_end - 1].max() < 40 < green[first_end + 1 :].min()
+    view = window_on(one.scene, clip.qpos, *MAIN, whole=True)
+    x, y = one.scene.thing.vertices.T
+    for qpos in clip.qpos:
+        cos, sin = np.cos(qpos[5]), np.sin(qpos[5])
+        object_ = np.column_stack([cos * x - sin * y + qpos[3], sin * x + cos * y + qpos[4]])
+        hand = qpos[:3, None] * one.scene.kinematics.directions
+        pixels = view.pixels(np.concatenate([object_, hand]))
+        assert (pixels > 0.0).all()
+        assert (pixels < MAIN).all()
+
+
+def test_a_small_hand_does_not_cut_the_object_of_its_own_film(done: Replay):
+    (run,) = done.runs
+    qpos = np.array([[0.01, 0.01, 0.01, 0.0, 0.0, 0.0]])
+    assert window_on(run.scene, qpos, *MAIN).extent < 0.5
+    assert window_on(run.scene, qpos, *MAIN, whole=True).extent > 0.5
+
+
+def test_no_closing_is_called_lost():
+    counts = dict.fromkeys(OUTCOMES, 0) | {"jammed": 1}
     text = "0 of 1 closings ended in the target grasp, 0 escaped, 1 jammed"
-    assert film_page.headline(clip.run) == (text, False)
+    assert headline(counts, guaranteed=True) == (text, False)
 
 
 @pytest.mark.parametrize("outcome", OUTCOMES)
 def test_the_badge_holds_its_words(done: Replay, outcome: str):
     canvas = Canvas(400, 80)
-    film_page._draw_badge(canvas, one_trial(done, outcome, Recorded(4, "target", True)))
+    film_page._draw_badge(canvas, one_trial(done, outcome))
     row = canvas.pixels[40, :, :3].astype(int)
     inside = np.flatnonzero((row != 255).any(axis=1))
     white = np.flatnonzero((canvas.pixels[28:50, 20 : inside.max() + 1, :3] > 200).all(-1).any(0))

@@ -100,7 +100,7 @@ def study(
         "versions": {"icage": "1"},
         "finished": True,
         "stopped": {"early": False, "at": count, "why": "all trials that were asked for"},
-        "found": summary(config, design, table),
+        "found": summary(config, design, table, 4.0),
     }
     return json.loads(json.dumps(document)), table
 
@@ -179,6 +179,7 @@ def with_closings(document: dict[str, Any], closed: list[int], target: list[int]
         "friction": {
             "bins": [
                 {"low": k, "high": k, "mean": k, "trials": 100, "closed": shut, "target": hit,
+                 "near_target": hit,
                  "rate_95": list(wilson(hit, shut)) if shut else None}
                 for k, (shut, hit) in enumerate(zip(closed, target, strict=True))
             ]
