@@ -7,8 +7,8 @@ from dataclasses import asdict
 from typing import Any, Final
 
 import numpy as np
-import pyarrow as pa
 
+from experiments.arrow_table import Table
 from experiments.io.intervals import wilson
 from experiments.io.words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
@@ -33,7 +33,7 @@ LISTED: Final = 50
 """Failed closings named in ``study.json``; the table has all."""
 
 
-def summary(config: StudyConfig, design: Design, table: pa.Table) -> dict[str, Any]:
+def summary(config: StudyConfig, design: Design, table: Table) -> dict[str, Any]:
     """The findings, as they stand in ``study.json``."""
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
@@ -89,13 +89,13 @@ def independent(design: Design, count: int) -> BoolArray:
     return np.arange(count) % (len(design.groups) + 2) < 2
 
 
-def _grasps(table: pa.Table, outcomes: Any) -> dict[str, int]:
+def _grasps(table: Table, outcomes: Any) -> dict[str, int]:
     """Trials per grasp of the plan, for those that ended in another one."""
     ids = table["grasp_id"].to_numpy()[outcomes == "other_grasp"]
     return {str(k): int((ids == k).sum()) for k in np.unique(ids).tolist()}
 
 
-def _verdicts(table: pa.Table, outcomes: Any, closed: BoolArray) -> Iterator[dict[str, Any]]:
+def _verdicts(table: Table, outcomes: Any, closed: BoolArray) -> Iterator[dict[str, Any]]:
     """What the planner said of the planned hand at the starts, and what became of the true one."""
     verdict = np.array(table["verdict"].to_pylist())
     caged = table["in_cage"].to_numpy(zero_copy_only=False)
@@ -112,7 +112,7 @@ def _verdicts(table: pa.Table, outcomes: Any, closed: BoolArray) -> Iterator[dic
                 }
 
 
-def _of(table: pa.Table, name: str, rows: BoolArray, how: Any) -> float | None:
+def _of(table: Table, name: str, rows: BoolArray, how: Any) -> float | None:
     values = np.asarray(table[name].to_numpy(zero_copy_only=False), dtype=np.float64)[rows]
     values = values[np.isfinite(values)]
     return float(how(values)) if len(values) else None

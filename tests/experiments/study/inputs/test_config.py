@@ -29,9 +29,11 @@ from experiments.study.inputs.distributions import (
     parse_distribution,
 )
 from experiments.study.inputs.fields import HELP
-from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
+from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES
+from experiments.study.read_variable import read_variable
 from experiments.study.run.command import command_line
 from experiments.study.run.session import session_of
+from experiments.study.variable_list import listing
 from icage.errors import InputError
 from icage.formats.case_json import Case, read_case
 from models import CASES
