@@ -11,23 +11,20 @@ of the count carried from look to look. Stopped runs look as the study does.
 from __future__ import annotations
 
 import argparse
-import itertools
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import binom
 
 from experiments.io.intervals import (
     AT_LEAST,
     CONFIDENCE,
     LOOK_EVERY,
     exact_coverage,
-    half_width,
     wilson_bounds,
 )
+from tests.oracles.against_itself.stopping import exact_stops, simulated_stops
 
 FIXED = ((0.9, 200), (0.99, 1000), (0.5, 200), (0.9, 20), (0.97, 500), (0.999, 500),
          (0.999, 1000), (0.999, 10_000))  # fmt: skip
@@ -93,50 +90,6 @@ def stopped_row(rate: float, wanted: float, runs: int, rng: np.random.Generator)
         "mean_trials": round(trials, 1),
         "mean_trials_exact": round(trials_exact, 1),
     }
-
-
-def simulated_stops(
-    rate: float, wanted: float, runs: int, rng: np.random.Generator
-) -> tuple[float, float]:
-    """Share of runs whose interval at the stop holds the rate, and their mean length [trials]."""
-    held, spent = 0, 0
-    seen = np.zeros(runs, dtype=np.int64)  # of the runs that go on
-    for before, looked in looks():
-        seen = seen + rng.binomial(looked - before, rate, len(seen))
-        stops = half_width(seen, looked) <= wanted
-        low, high = wilson_bounds(seen[stops], looked)
-        held += int(((low <= rate) & (rate <= high)).sum())
-        spent += looked * int(stops.sum())
-        seen = seen[~stops]
-        if not len(seen):
-            break
-    return held / runs, spent / runs
-
-
-def exact_stops(rate: float, wanted: float) -> tuple[float, float]:
-    """The same without chance: the count's distribution among runs that go on, look by look."""
-    held, spent = 0.0, 0.0
-    weight = np.ones(1)  # [probability] of every count
-    for before, looked in looks():
-        added = looked - before
-        weight = np.convolve(weight, binom.pmf(np.arange(added + 1), added, rate))
-        counts = np.arange(looked + 1)
-        stops = half_width(counts, looked) <= wanted
-        low, high = wilson_bounds(counts, looked)
-        held += float(weight[stops & (low <= rate) & (rate <= high)].sum())
-        spent += looked * float(weight[stops].sum())
-        weight[stops] = 0.0
-        if stops.all():  # any run has stopped, however it went
-            break
-    return held, spent
-
-
-def looks() -> Iterator[tuple[int, int]]:
-    """Trials at the look before and at this one; without an end: every run stops."""
-    before = 0
-    for looked in itertools.count(AT_LEAST, LOOK_EVERY):
-        yield before, looked
-        before = looked
 
 
 if __name__ == "__main__":

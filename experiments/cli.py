@@ -46,7 +46,8 @@ def parser() -> Parser:
     top = Parser(
         prog="icage",
         description="How far may a three-finger hand open before the object inside can escape?",
-        epilog="A shipped object's name (pliers, saw, wrench) may stand wherever a CASE does.",
+        epilog="A shipped object's name (pliers, saw, wrench), or that of one of its grasps "
+        "(pliers/1_best), may stand wherever a CASE does.",
     )
     top.add_argument("--version", action="version", version=f"icage {icage.__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)

@@ -31,6 +31,8 @@ from icage.kernels.locate import depth_inside
 
 StartSet = Literal["guaranteed", "rest", "cage"]
 
+Region = shapely.Polygon | shapely.MultiPolygon
+
 TRIES_PER_START = 100_000
 """Hands tried per start asked for before giving up: the rates seen are 1e-3 to 0.2."""
 
@@ -146,7 +148,7 @@ class Box:
     z: NDArray[np.complex128]
     pair: tuple[int, int]
     areas: tuple[_Area, _Area]
-    third: shapely.MultiPolygon
+    third: Region
     floor: float
     top: float
 
@@ -208,7 +210,7 @@ class _Area:
     cumulative: FloatArray
 
     @classmethod
-    def of(cls, region: shapely.MultiPolygon) -> _Area:
+    def of(cls, region: Region) -> _Area:
         """Cut a region, holes and all."""
         cut = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
         areas = shapely.area(cut)
@@ -227,9 +229,7 @@ class _Area:
         return a + u * (b - a) + v * (c - a)
 
 
-def region_points(
-    region: shapely.MultiPolygon, rng: np.random.Generator, count: int
-) -> NDArray[np.complex128]:
+def region_points(region: Region, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
     """Points (count,), uniform over a region."""
     return _Area.of(region).points(rng, count)
 

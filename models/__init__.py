@@ -36,6 +36,15 @@ def case_path(name: str) -> Path:
     return case_paths(name)[0]
 
 
+def grasp_cases() -> dict[str, Path]:
+    """Name to case file of every documented grasp of a shipped object.
+
+    >>> list(grasp_cases())[:2]
+    ['pliers/1_best', 'pliers/2_paper_shape']
+    """
+    return {f"{name}/{path.stem}": path for name in object_names() for path in case_paths(name)}
+
+
 def _folder(name: str) -> Path:
     if name not in object_names():
         raise KeyError(f"no shipped object {name!r}; there are {', '.join(object_names())}")

@@ -8,9 +8,8 @@ import multiprocessing
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from importlib.metadata import version
 from itertools import chain
 from pathlib import Path
@@ -19,34 +18,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-TOLERANCE = 1e-7
-"""[1] Two ways to the same level disagree if they differ by more than this (relative)."""
-
-
-@dataclass(slots=True)
-class Outcome:
-    """What one target showed. ``opening`` = sigma_max / sigma_0 where both exist."""
-
-    number: int
-    family: str
-    runs: int = 0
-    opening: float | None = None
-    verdict: str = "cage"
-    worst: float = 0.0
-    disagreements: list[str] = field(default_factory=list)
-    exceptions: list[str] = field(default_factory=list)
-
-    def add(self, what: str, difference: float) -> None:
-        """Note how much one more way to the same levels differs."""
-        self.runs += 1
-        if difference > TOLERANCE:
-            self.disagreements.append(f"{what}: {difference:.3g}")
-        else:
-            self.worst = max(self.worst, difference)
-
-
-Judge = Callable[[int, int], Outcome]
-"""(seed, number of the target) -> Outcome."""
+from tests.oracles.against_itself.outcome import TOLERANCE, Judge, Outcome
 
 
 def options(description: str, count: int) -> argparse.ArgumentParser:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.io.options import reason
@@ -9,19 +10,53 @@ from icage.case import Case
 from icage.errors import InputError
 from icage.formats.case_json import parse_unit, read_case, read_object
 from icage.formats.svg.outline import read_svg, stated_unit
-from models import case_path, object_names, outline_path
+from models import case_paths, grasp_cases, object_names, outline_path
 
 
-def case_file(text: str) -> Path:
-    """The file of a case given as a path or as a shipped object's name; it need not exist."""
-    if text in object_names() and not Path(text).is_file():
-        return case_path(text)
-    return _given(text)
+@dataclass(frozen=True, slots=True)
+class Named:
+    """What a name on the command line stands for.
+
+    Attributes
+    ----------
+    shipped:
+        The name of a shipped object; None for one of its grasps, or a file.
+    cases:
+        Case files: all grasps of a shipped object, or one.
+    outline:
+        The file with its outline: a case file with or without a grasp, or a drawing.
+    """
+
+    shipped: str | None
+    cases: tuple[Path, ...]
+    outline: Path
+
+
+def is_shipped(text: str) -> bool:
+    """Whether this names a shipped object (``pliers``) or one of its grasps (``pliers/1_best``)."""
+    return text in object_names() or text in grasp_cases()
+
+
+def named(text: str) -> Named:
+    """Whether a name is a shipped object, one of its grasps or a file; a file comes first.
+
+    Raises
+    ------
+    InputError:
+        It is none of them.
+    """
+    if is_shipped(text) and not Path(text).is_file():
+        if text in object_names():
+            return Named(text, case_paths(text), outline_path(text))
+        path = grasp_cases()[text]
+    else:
+        path = _given(text)
+    return Named(None, (path,), path)
 
 
 def find_case(text: str) -> Case:
-    """The case given as a path or as a shipped object's name."""
-    return read_case(case_file(text))
+    """The case of a case file, of a shipped object (its first grasp) or of its grasp."""
+    return read_case(named(text).cases[0])
 
 
 def find_object(text: str, width: float | None = None, unit: str | None = None) -> Case:
@@ -30,16 +65,13 @@ def find_object(text: str, width: float | None = None, unit: str | None = None) 
     Parameters
     ----------
     text:
-        A path ``*.svg`` or ``*.json``, or a shipped object's name.
+        A path ``*.svg`` or ``*.json``, or the name of a shipped object or grasp.
     width:
         [unit] Longer side of its bounding box, for drawings only; if None, the size they state.
     unit:
         Unit of a drawing's outline; if None, as in ``read_drawing``.
     """
-    if text in object_names() and not Path(text).is_file():
-        path = outline_path(text)
-    else:
-        path = _given(text)
+    path = named(text).outline
     if path.suffix.lower() == ".svg":
         return read_drawing(path, width, unit)
     if width is not None or unit is not None:
@@ -81,6 +113,10 @@ def _given(text: str) -> Path:
     except (OSError, ValueError) as error:
         raise InputError(f"{text!r} cannot be a file: {reason(error)}") from error
     if missing:
+        owner, slash, _ = text.partition("/")
+        if slash and owner in object_names():
+            grasps = ", ".join(one for one in grasp_cases() if one.startswith(f"{owner}/"))
+            raise InputError(f"{text!r} does not exist; shipped grasps of {owner}: {grasps}")
         names = ", ".join(object_names())
         raise InputError(f"{text!r} does not exist; shipped objects: {names}")
     return path

@@ -42,13 +42,12 @@ def run(args: argparse.Namespace) -> int:
     """Search once, then draw what was asked for."""
     from pathlib import Path
 
-    from experiments.cases.named import case_file
+    from experiments.cases.named import find_case
     from experiments.figures.paper import FIGURES
     from experiments.io.options import check_folder
-    from icage.formats.case_json import read_case
 
     out = Path(args.out)
-    case = read_case(case_file(args.case))
+    case = find_case(args.case)
     names = [name for name in FIGURES if args.only is None or name in args.only]
     check_folder("--out", out, [f"{name}.{args.format}" for name in names], case.sources)
 

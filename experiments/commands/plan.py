@@ -45,13 +45,12 @@ def run(args: argparse.Namespace) -> int:
     """Plan, then write what was asked for."""
     from pathlib import Path
 
-    from experiments.cases.named import case_file
+    from experiments.cases.named import find_case
     from icage.errors import InputError
-    from icage.formats.case_json import read_case
     from icage.formats.json_out import json_text, write_json
     from icage.formats.plan_json import plan_document, plan_summary
 
-    case = read_case(case_file(args.case))
+    case = find_case(args.case)
     check_output("--json", args.json, *case.sources)
     check_output("--figure", args.figure, *case.sources)
     if args.figure is not None and Path(args.figure).suffix.lower() not in (".svg", ".png"):

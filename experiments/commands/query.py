@@ -36,13 +36,12 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.cases.named import case_file
+    from experiments.cases.named import find_case
     from icage.errors import InputError
-    from icage.formats.case_json import read_case
     from icage.formats.json_out import write_json
     from icage.formats.placements_csv import read_placements, read_placements_stream
 
-    case = read_case(case_file(args.case))
+    case = find_case(args.case)
     check_output("--json", args.json, *case.sources, Path(args.placements))
     if args.placements == "-":
         if sys.stdin is None:

@@ -50,15 +50,13 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.cases.named import case_file
+    from experiments.cases.named import named
     from experiments.io.options import check_folder
     from icage.formats.case_json import read_case
-    from models import case_paths, object_names
 
-    shipped = args.case in object_names() and not Path(args.case).is_file()
-    paths = case_paths(args.case) if shipped else (case_file(args.case),)
+    given = named(args.case)
     folder = Path(args.out)
-    cases = [read_case(path) for path in paths]
+    cases = [read_case(path) for path in given.cases]
 
     from experiments.io.progress import stage_bar
     from experiments.replay.files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
@@ -66,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     from icage.sampling import SamplingError
 
     check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
-    name = args.case if shipped else cases[0].name
+    name = given.shipped or cases[0].name
     try:
         with whole_folder(folder) as staging, stage_bar() as report:
             done = replay(cases, args.trials, args.seed, args.threads or 0, report)

@@ -80,7 +80,7 @@ def _four(text: str) -> tuple[float, ...]:
 def run(args: argparse.Namespace) -> int:
     """Check everything, run what is missing, sum up."""
     if args.variables:
-        from experiments.study.inputs.variables import listing
+        from experiments.study.inputs.variable_list import listing
 
         print("\n".join(listing()))
         return 0

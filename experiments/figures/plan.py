@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -23,7 +24,10 @@ from icage.formats.whole_files import whole_file
 
 FORMATS = (".svg", ".png")
 
-FIGURE_SETTINGS = {
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
+FIGURE_SETTINGS: dict[RcKeyType, Any] = {
     "svg.hashsalt": "icage",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from typing import NoReturn
 
 
 @contextmanager
-def stage_bar() -> Iterator[Callable[[str, int, int], None]]:
+def stage_bar() -> Generator[Callable[[str, int, int], None]]:
     """A callback (stage, done, total) that drives one bar per stage; silent when not a terminal."""
     from tqdm import tqdm
 
-    bars: dict[str, tqdm[object]] = {}
+    bars: dict[str, tqdm[NoReturn]] = {}
 
     def report(stage: str, done: int, total: int) -> None:
         if stage not in bars:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from icage.errors import InputError
-from models import CASES, HARD, case_paths, object_names
+from models import CASES, HARD, grasp_cases
 
 Level = Literal["fast", "default", "full"]
 
@@ -63,9 +63,7 @@ def shipped(level: Level) -> tuple[Entry, ...]:
     """The shipped cases: the solved problems, the tools' grasps and the hard ones."""
     solved = [Entry(path.stem, path) for path in sorted(CASES.glob("*.json"))]
     hard = [Entry(f"hard/{path.stem}", path) for path in sorted(HARD.glob("*.json"))]
-    tools = [
-        Entry(f"{name}/{path.stem}", path) for name in object_names() for path in case_paths(name)
-    ]
+    tools = [Entry(name, path) for name, path in grasp_cases().items()]
     every = (*solved, *hard, *tools)
     return tuple(e for e in every if e.name in FAST) if level == "fast" else every
 

@@ -11,6 +11,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from experiments.io.arrow_table import Table
 from experiments.io.versions import versions
 from experiments.regress.measure import Row
 from experiments.replay.files import JSON, TRIALS, trial_table, whole_folder
@@ -18,7 +19,7 @@ from experiments.replay.run import Replay, run_document
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
 
-Record = tuple[list[dict[str, Any]], pa.Table | None]
+Record = tuple[list[dict[str, Any]], Table | None]
 """Run documents and a row per trial, of one case."""
 
 
@@ -36,7 +37,7 @@ def record_of(row: Row) -> Record:
 def write_records(records: list[Record], seed: int, folder: Path) -> None:
     """``replay.json`` and ``trials.parquet``, both or none."""
     runs: list[dict[str, Any]] = []
-    tables: list[pa.Table] = []
+    tables: list[Table] = []
     for documents, table in records:
         if table is not None:
             place = table.schema.get_field_index("run")

@@ -79,7 +79,7 @@ def _all(
     workers = min(workers or os.cpu_count() or 1, len(entries))
     report("cases", 0, len(entries))
     if workers == 1:
-        done = []
+        done: list[Done] = []
         for number, entry in enumerate(entries):
             done.append(one_case(entry, effort))
             report("cases", number + 1, len(entries))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +18,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.figures.plan import draw_plan, figure_regions
+from experiments.io.arrow_table import Column, Table
 from experiments.io.versions import versions
 from experiments.replay.run import Replay, Report, Run, run_document
 from icage.cells.membership import VERDICTS, query
@@ -32,7 +33,7 @@ ALL: Final = (JSON, TRIALS, REGIONS, VIDEO)
 
 
 @contextmanager
-def whole_folder(folder: Path) -> Iterator[Path]:
+def whole_folder(folder: Path) -> Generator[Path]:
     """A place to write files to; they move into ``folder`` together when the block ends well.
 
     ``folder`` is made if need be. Files of an earlier replay that this one did not write again are
@@ -115,7 +116,7 @@ def replay_document(
     }
 
 
-def trial_table(done: Replay) -> pa.Table:
+def trial_table(done: Replay) -> Table:
     """A row per trial. Lengths in the case's unit, angles in [rad], in the object's frame."""
     tables = [_run_table(number, run, done.seed) for number, run in enumerate(done.runs)]
     table = pa.concat_tables(tables)
@@ -123,7 +124,7 @@ def trial_table(done: Replay) -> pa.Table:
     return table.replace_schema_metadata(words)
 
 
-def _run_table(number: int, run: Run, seed: int) -> pa.Table:
+def _run_table(number: int, run: Run, seed: int) -> Table:
     count, size = len(run.closings), run.case.outline.diameter
     verdict = query(run.cage, run.starts.placements).verdict
     lost = np.flatnonzero(run.verdicts.outcome == OUTCOMES.index("diverged"))
@@ -157,7 +158,7 @@ def _pose(prefix: str, placements: np.ndarray, lost: Any) -> dict[str, Any]:
     }
 
 
-def _known(values: np.ndarray, lost: Any) -> pa.Array:
+def _known(values: np.ndarray, lost: Any) -> Column:
     """The values, null where a diverged closing left none."""
     mask = np.zeros(len(values), dtype=np.bool_)
     mask[list(lost)] = True

@@ -24,7 +24,7 @@ def write_mp4(
         pix_fmt_in="rgba",
         pix_fmt_out="yuv420p",
         codec="libx264",
-        quality=None,
+        quality=None,  # pyright: ignore[reportArgumentType]  # None leaves it to the codec
         macro_block_size=2,
         output_params=_OPTIONS,
         ffmpeg_log_level="error",

@@ -19,6 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import shapely
 
+from experiments.io.arrow_table import Table
 from experiments.io.versions import versions
 from icage.cage import Cage, GraspMinimum
 from icage.cells.regions import FingerRegion
@@ -135,7 +136,8 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
                 f"{str(folder / JSON)!r} was recorded before outline and settings were kept in it; "
                 "replay the case once more"
             )
-        config = SimConfig(**{**run["config"], "solimp": tuple(run["config"]["solimp"])})
+        kept: dict[str, Any] = {**run["config"], "solimp": tuple(run["config"]["solimp"])}
+        config = SimConfig(**kept)
         x, y = run["plan"]["hand"]["unit_fingers"][2]
         return RecordedTrial(
             index, row, run, dict(document["versions"]),
@@ -239,7 +241,7 @@ def _document(path: Path) -> dict[str, Any]:
     return document
 
 
-def _table(path: Path) -> pa.Table:
+def _table(path: Path) -> Table:
     try:
         return pq.read_table(path)
     except OSError as error:

@@ -69,11 +69,24 @@ def least_opening(
     d = complex(*(near[0] - middle)) / size
     w = complex(*(near[1] - near[0])) / size
     grown = 1.0 + 4.0 * radius / (size * abs(w))
+
+    def opening(v: FloatArray) -> float:
+        return float(v[2] ** 2 + v[3] ** 2)
+
+    def slope(v: FloatArray) -> FloatArray:
+        return np.array([0.0, 0.0, 2.0 * v[2], 2.0 * v[3]])
+
+    def outside(v: FloatArray) -> FloatArray:
+        return matrix @ v - level
+
+    def turned(v: FloatArray) -> FloatArray:
+        return matrix
+
     found: Any = minimize(
-        lambda v: v[2] ** 2 + v[3] ** 2,
+        opening,
         np.array([d.real, d.imag, w.real, w.imag]) * grown,
-        jac=lambda v: np.array([0.0, 0.0, 2.0 * v[2], 2.0 * v[3]]),
-        constraints={"type": "ineq", "fun": lambda v: matrix @ v - level, "jac": lambda v: matrix},
+        jac=slope,
+        constraints={"type": "ineq", "fun": outside, "jac": turned},
         method="SLSQP",
         options={"maxiter": 200, "ftol": 1e-15},
     )

@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import Final
 
@@ -30,7 +30,7 @@ INSTALL_HINT: Final = "apt-get install libegl1 libgl1 libgl1-mesa-dri"
 """One line for a Debian or Ubuntu machine without a display."""
 
 _PROBE_SECONDS: Final = 60.0
-_WORKER: Final = Path(__file__).with_name("process.py")
+_WORKER: Final = Path(__file__).with_name("camera_process.py")
 _PROBE_MODEL: Final = """<mujoco><worldbody><camera name="top" pos="0 0 1"/>
 <geom name="ball" size="0.1"/></worldbody></mujoco>"""
 
@@ -55,7 +55,7 @@ def find_backend() -> str | None:
 
 def render_frames(
     scene: Scene, qpos: FloatArray, view: View, decor: Decor | None = None
-) -> Iterator[NDArray[np.uint8]]:
+) -> Generator[NDArray[np.uint8]]:
     """Draw engine positions (F, 6), as in ``Recording.qpos``; yields (height, width, 3) frames.
 
     Raises
@@ -81,7 +81,7 @@ def _staged_model(scene: Scene, view: View, decor: Decor) -> object:
 
 def _draw(
     model: object, qpos: FloatArray, width: int, height: int, backend: str
-) -> Iterator[NDArray[np.uint8]]:
+) -> Generator[NDArray[np.uint8]]:
     size = width * height * 3
     with tempfile.TemporaryDirectory(prefix="icage-frames-") as folder:
         model_file, positions_file = Path(folder, "model.mjb"), Path(folder, "positions.npy")

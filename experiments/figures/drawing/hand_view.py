@@ -24,7 +24,7 @@ from experiments.figures.drawing.palette import (
     QUIET_INK,
     RULE,
 )
-from experiments.figures.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.shapes import as_path, is_blank, tidied
 from icage.arrays import FloatArray
 from icage.cells.regions import FingerRegion
 from icage.hand import Placement
@@ -52,7 +52,7 @@ class HandView:
         self._regions = [
             (FINGERS[r.finger - 1], DARK if r.level_name == "sigma_first" else LIGHT, path)
             for r in regions
-            if len((path := _normal_path(scene, r)).vertices)
+            if not is_blank(path := _normal_path(scene, r))
         ]
         self._goal = scene.start_positions(target.as_array())[0]
 

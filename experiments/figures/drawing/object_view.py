@@ -13,7 +13,7 @@ from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.caption import DARK, LIGHT
 from experiments.figures.drawing.palette import FINGERS, OBJECT_EDGE, OBJECT_FILL, PAPER
 from experiments.figures.drawing.plots import Box
-from experiments.figures.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.shapes import as_path, is_blank, tidied
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
@@ -44,7 +44,7 @@ class ObjectView:
         self._regions = [
             (FINGERS[r.finger - 1], DARK if r.level_name == "sigma_first" else LIGHT, path)
             for r in regions
-            if len((path := as_path(tidied(r.geometry, detail))).vertices)
+            if not is_blank(path := as_path(tidied(r.geometry, detail)))
         ]
 
     def _scale(self, bounds: tuple[float, ...]) -> float:

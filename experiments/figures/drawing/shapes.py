@@ -32,6 +32,17 @@ def as_path(geometry: BaseGeometry) -> Path:
     return Path(np.concatenate(pieces), np.concatenate(codes))
 
 
+def is_blank(path: Path) -> bool:
+    """Whether there is nothing on a path."""
+    return np.size(path.vertices) == 0
+
+
+def as_pair(point: NDArray[np.float64]) -> tuple[float, float]:
+    """A point (2,) as matplotlib's annotations take it."""
+    x, y = point.tolist()
+    return x, y
+
+
 def polygons_of(geometry: BaseGeometry) -> list[shapely.Polygon]:
     """The polygons in a geometry, none of them empty; points and lines are left out."""
     parts = shapely.get_parts(geometry)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from experiments.figures.drawing.palette import BAD, QUIET_INK
+from experiments.figures.drawing.shapes import as_pair
 from experiments.figures.paper.page import (
     bounds_of,
     draw_hand,
@@ -87,7 +88,7 @@ def _arrow(axes: Axes, study: Study, contact: FloatArray, way: FloatArray) -> No
     """A force at a contact: an arrow that ends there."""
     tail = contact - 0.13 * study.polygon.diameter * way / max(float(np.hypot(*way)), 1e-300)
     axes.annotate(
-        "", contact, tail, zorder=6, annotation_clip=False,
+        "", as_pair(contact), as_pair(tail), zorder=6, annotation_clip=False,
         arrowprops={"arrowstyle": "-|>", "color": BAD, "lw": 1.0, "shrinkB": 3.0, "shrinkA": 0.0},
     )  # fmt: skip
 

@@ -67,7 +67,7 @@ def draw(study: Study) -> tuple[Figure, str | None]:
 
         path = as_path(study.polygon.polygon)
         axes.add_patch(
-            PathPatch(path.__class__(at(path.vertices), path.codes), fc=OBJECT_FILL,
+            PathPatch(path.__class__(at(np.asarray(path.vertices)), path.codes), fc=OBJECT_FILL,
                       ec=OBJECT_EDGE, lw=0.4)
         )  # fmt: skip
         corners = at(contacts)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from experiments.figures.drawing.palette import BAD, FINGERS, INK, ORANGE, tint
+from experiments.figures.drawing.palette import BAD, FINGERS, INK, ORANGE, Colour, tint
 from experiments.figures.paper.page import (
     HALO,
     bounds_of,
@@ -63,7 +63,7 @@ def draw(study: Study) -> tuple[Figure, str | None]:
     return figure, None
 
 
-def draw_obstacles(axes: Axes, study: Study, pair: int, colour=OBSTACLE) -> None:
+def draw_obstacles(axes: Axes, study: Study, pair: int, colour: Colour = OBSTACLE) -> None:
     """The obstacles of a contact space, with fewer corners where nobody could see them."""
     shape = obstacles(study.boundary, study.hand, pair)
     fill(axes, shape.simplify(2e-4 * study.boundary.perimeter), colour, zorder=2)

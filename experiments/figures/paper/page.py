@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -11,6 +12,7 @@ import shapely
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import PathPatch, Polygon
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
@@ -28,16 +30,19 @@ from experiments.figures.drawing.palette import (
     Colour,
     tint,
 )
-from experiments.figures.drawing.shapes import as_path
+from experiments.figures.drawing.shapes import as_pair, as_path, is_blank
 from experiments.figures.paper.study import Study
 from icage.formats.whole_files import whole_file
 from icage.outline import Outline
+
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
 
 FORMATS = ("svg", "pdf", "png")
 WIDTH = 7.0
 """[inch] Both columns of a journal."""
 
-SETTINGS = {
+SETTINGS: dict[RcKeyType, Any] = {
     "svg.hashsalt": "icage",
     "svg.fonttype": "path",
     "pdf.fonttype": 42,
@@ -63,8 +68,8 @@ Points = NDArray[np.float64]
 
 def new_sheet(height: float, width: float = WIDTH) -> Figure:
     """An empty figure, [inch], whose panels keep clear of each other."""
-    figure = Figure(figsize=(width, height), facecolor="white", layout="constrained")
-    figure.get_layout_engine().set(h_pad=0.06, w_pad=0.05)  # pyright: ignore
+    clear = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.05)
+    figure = Figure(figsize=(width, height), facecolor="white", layout=clear)
     FigureCanvasAgg(figure)
     return figure
 
@@ -72,12 +77,12 @@ def new_sheet(height: float, width: float = WIDTH) -> Figure:
 def save(figure: Figure, path: FilePath) -> None:
     """Write a figure whole or not at all, the same bytes for the same figure."""
     kind = path.suffix[1:]
-    about: dict[str, str | None] = {
+    every: dict[str, dict[str, str | None]] = {
         "svg": {"Date": None}, "pdf": {"CreationDate": None, "Producer": "icage"},
         "png": {"Software": "icage"},
-    }[kind]  # fmt: skip
+    }  # fmt: skip
     with matplotlib.rc_context(SETTINGS), whole_file(path) as part:
-        figure.savefig(part, format=kind, dpi=300 if kind != "png" else 200, metadata=about)
+        figure.savefig(part, format=kind, dpi=300 if kind != "png" else 200, metadata=every[kind])
 
 
 def heading(axes: Axes, letter: str, words: str) -> None:
@@ -137,9 +142,10 @@ def draw_hand(
                 way = across if across @ way >= 0.0 else -across
             way = way / max(float(np.hypot(*way)), 1e-300)
             axes.annotate(
-                str(k + 1), point, way * (4.5 + size), textcoords="offset points", ha="center",
-                va="center", fontsize=7.5, color=FINGERS[k], fontweight="bold", zorder=8,
-                path_effects=HALO, annotation_clip=False,
+                str(k + 1), as_pair(point), as_pair(way * (4.5 + size)),
+                textcoords="offset points", ha="center", va="center", fontsize=7.5,
+                color=FINGERS[k], fontweight="bold", zorder=8, path_effects=HALO,
+                annotation_clip=False,
             )  # fmt: skip
 
 
@@ -174,7 +180,7 @@ def fill(
 ) -> None:  # fmt: skip
     """A filled shape in the panel's own coordinates."""
     path = as_path(shape)
-    if len(path.vertices):
+    if not is_blank(path):
         line = 0.0 if edge is None else width
         patch = PathPatch(
             path, fc=colour, ec=edge or "none", lw=line, alpha=alpha, hatch=hatch, zorder=zorder

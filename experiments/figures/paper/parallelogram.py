@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, SKY, tint
+from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, SKY, Colour, tint
 from experiments.figures.paper.obstacles import OBSTACLE
 from experiments.figures.paper.page import (
     bounds_of,
@@ -69,7 +69,7 @@ def draw(study: Study) -> tuple[Figure, str | None]:
     return figure, f"edges {j} and {k}: {len(regions)} convex regions, {count} nodes"
 
 
-def _key(marker: str, colour, label: str, size: float) -> Line2D:
+def _key(marker: str, colour: Colour, label: str, size: float) -> Line2D:
     return Line2D([], [], ls="", marker=marker, ms=size, mfc=colour, mec="white", label=label)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -10,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
-from experiments.figures.drawing.shapes import as_path, tidied
+from experiments.figures.drawing.shapes import as_path, is_blank, tidied
 from experiments.figures.paper.obstacles import draw_obstacles
 from experiments.figures.paper.page import (
     bounds_of,
@@ -191,8 +193,8 @@ class _Graph:
 
 
 def _keys(study: Study) -> list[Line2D | Patch]:
-    def mark(marker: str, label: str, **style: object) -> Line2D:
-        return Line2D([], [], ls="", marker=marker, label=label, **style)  # pyright: ignore
+    def mark(marker: str, label: str, **style: Any) -> Line2D:
+        return Line2D([], [], ls="", marker=marker, label=label, **style)
 
     keys: list[Line2D | Patch] = [
         mark("o", "target grasp", ms=5.0, color=INK),
@@ -219,7 +221,7 @@ def _on_object(axes: Axes, study: Study) -> None:
     for region in study.regions:
         colour = FINGERS[region.finger - 1]
         path = as_path(tidied(region.geometry, 1e-3 * study.polygon.diameter))
-        if len(path.vertices):
+        if not is_blank(path):
             axes.add_patch(PathPatch(path, fc=tint(colour, 0.35), ec=colour, lw=0.5, zorder=1))
     draw_hand(axes, cage.contacts)
     if escape is not None:

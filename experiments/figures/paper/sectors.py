@@ -7,10 +7,12 @@ import shapely
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from shapely.geometry.base import BaseGeometry
 
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, QUIET_INK, tint
 from experiments.figures.paper.page import bounds_of, draw_hand, fill, new_sheet, object_panel
 from experiments.figures.paper.study import Study
+from icage.arrays import FloatArray
 from icage.contact_space.sectors import Sector, common_area, concurrency_point, sector_at
 
 _REACH = 6.0
@@ -60,7 +62,9 @@ def draw(study: Study) -> tuple[Figure, str | None]:
     return figure, words
 
 
-def _words(found: list[Sector | None], held: list[Sector], area: shapely.Geometry, point) -> str:
+def _words(
+    found: list[Sector | None], held: list[Sector], area: BaseGeometry, point: FloatArray | None
+) -> str:
     if len(held) < 3:
         bare = [str(k + 1) for k, s in enumerate(found) if s is None]
         return f"finger {', '.join(bare)} touches nothing: it has no sector"

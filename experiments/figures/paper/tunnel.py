@@ -6,8 +6,10 @@ import numpy as np
 import shapely
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from shapely.geometry.base import BaseGeometry
 
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE, QUIET_INK, SKY, tint
+from experiments.figures.drawing.shapes import as_pair
 from experiments.figures.paper.page import (
     HALO,
     bounds_of,
@@ -81,7 +83,7 @@ def _nothing(study: Study) -> tuple[Figure, str]:
     return figure, NONE
 
 
-def _surroundings(study: Study, contacts: FloatArray) -> shapely.Geometry:
+def _surroundings(study: Study, contacts: FloatArray) -> BaseGeometry:
     """The object, or its part near the hand if the hand is small on it."""
     size = float(np.ptp(contacts, axis=0).max())
     near = shapely.MultiPoint(contacts).envelope.buffer(0.6 * size, join_style="mitre")
@@ -122,8 +124,8 @@ def _landing(axes: Axes, study: Study, to: int, after: FloatArray) -> None:
         axes.plot(*point, "o", ms=5.5, mfc=colour, mec="white", mew=0.8, zorder=6, clip_on=False)
         inward = np.sign(rectangle.mean(axis=0) - point)
         axes.annotate(
-            name, point, 8.0 * inward, textcoords="offset points", ha="center", va="center",
-            fontsize=9.0, zorder=7, path_effects=HALO,
+            name, as_pair(point), as_pair(8.0 * inward), textcoords="offset points",
+            ha="center", va="center", fontsize=9.0, zorder=7, path_effects=HALO,
         )  # fmt: skip
     side = 0.05 * (rectangle[2] - rectangle[0])
     axes.set_xlim(rectangle[0, 0] - side[0], rectangle[2, 0] + side[0])

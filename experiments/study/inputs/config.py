@@ -12,7 +12,8 @@ from typing import Any, Final
 from experiments.study.inputs.distributions import LARGEST, Distribution
 from experiments.study.inputs.fields import HELP
 from experiments.study.inputs.fits import check_fits
-from experiments.study.inputs.variables import VARIABLES, read_variable
+from experiments.study.inputs.read_variable import read_variable
+from experiments.study.inputs.variables import VARIABLES, input_of, is_placement
 from icage.case import Case
 from icage.errors import InputError
 
@@ -89,12 +90,12 @@ class StudyConfig:
     @property
     def rough(self) -> bool:
         """Whether any trial may have friction between fingers and object."""
-        return self.distribution("friction").high > 0.0
+        return self.distribution(input_of("world", "friction").name).high > 0.0
 
     @property
     def noisy(self) -> bool:
         """Whether any trial may have noise on its outline."""
-        return self.distribution("outline_noise").high > 0.0
+        return self.distribution(input_of("shape", "noise").name).high > 0.0
 
     def document(self) -> dict[str, Any]:
         """As kept in ``study.json``: lengths in the case's unit, angles in [rad]."""
@@ -155,7 +156,7 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     for name, value in given.items():
         given[name] = _typed(name, value)
     if not given.get("starts"):
-        moved = any(VARIABLES[name].group == "placement" for name in vary)
+        moved = any(is_placement(name) for name in vary)
         given["starts"] = "nominal" if moved or given.get("nominal") is not None else "guaranteed"
     if given.get("nominal") is not None and given["starts"] != "nominal":
         raise ConfigError(f"nominal is given, but starts = {given['starts']!r}")

@@ -16,14 +16,12 @@ import numpy as np
 from scipy.stats import qmc
 
 from experiments.study.inputs.config import StudyConfig
-from experiments.study.inputs.variables import VARIABLES
+from experiments.study.inputs.variables import PLACEMENT, VARIABLES, input_of, is_placement
 from experiments.study.report.indices import design_rows
 from icage.arrays import FloatArray, IntArray
 
 _STREAM: Final = 11
 """Of the random numbers of inputs; starts and shapes have others."""
-
-MOST_DIMENSIONS: Final = len(VARIABLES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +50,14 @@ class Design:
         names = tuple(n for n in VARIABLES if n in config.vary and config.vary[n].varies)
         if config.sampling != "saltelli":
             return cls(config, names, (), config.trials)
-        placed = tuple(k for k, n in enumerate(names) if VARIABLES[n].group == "placement")
+        placed = tuple(k for k, n in enumerate(names) if is_placement(n))
         groups: list[tuple[str, tuple[int, ...]]]
         groups = [(n, (k,)) for k, n in enumerate(names) if k not in placed]
-        if "outline_noise" not in names and config.noisy:
-            groups.append(("outline_noise", ()))
+        noise = input_of("shape", "noise").name
+        if noise not in names and config.noisy:
+            groups.append((noise, ()))
         if placed or config.starts != "nominal":
-            groups.append(("placement", placed))
+            groups.append((PLACEMENT, placed))
         base = base_points(config.trials, len(groups))
         return cls(config, names, tuple(groups), design_rows(base, len(groups)))
 
@@ -72,7 +71,7 @@ class Design:
             found[name] = self.config.vary[name].values(uniform[:, k])
         return found | self._grids(trials)
 
-    def streams(self, trials: IntArray, group: str = "placement") -> tuple[IntArray, IntArray]:
+    def streams(self, trials: IntArray, group: str = PLACEMENT) -> tuple[IntArray, IntArray]:
         """Which start each trial takes, (n,) number and (n,) stream; stream 1 is Saltelli's B."""
         if not self.groups:
             return trials, np.zeros_like(trials)
@@ -83,7 +82,7 @@ class Design:
 
     def shapes(self, trials: IntArray) -> IntArray:
         """Which shape of the boundary's noise each trial has, (n,): as with the starts."""
-        number, stream = self.streams(trials, "outline_noise")
+        number, stream = self.streams(trials, input_of("shape", "noise").name)
         return 2 * number + stream
 
     def _quantiles(self, trials: IntArray) -> FloatArray:

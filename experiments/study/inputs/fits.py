@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Final
 
@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from experiments.study.inputs.distributions import Distribution
+from experiments.study.inputs.variables import input_of
 from icage.case import Case
 from icage.errors import HandError, InputError
 from icage.hand import HandShape
@@ -37,36 +38,38 @@ def check_fits(
     MisfitError:
         Names the input, what was found and what is allowed.
     """
-    if "finger_radius" in vary:
-        _check_fingers(vary["finger_radius"], case)
-    if "phi_1" in vary or "phi_2" in vary:
-        _check_triangle(vary, case)
+    radius = input_of("shape", "finger_radius").name
+    if radius in vary:
+        _check_fingers(radius, vary[radius], case)
+    angles = [input_of("shape", field).name for field in ("phi_1", "phi_2")]
+    if any(name in vary for name in angles):
+        _check_triangle(angles, vary, case)
     if nominal is not None:
         _check_near(nominal, case)
 
 
-def _check_fingers(error: Distribution, case: Case) -> None:
+def _check_fingers(name: str, error: Distribution, case: Case) -> None:
     """Errors of their radius must leave discs."""
     radius, thinnest = case.finger_radius, THINNEST * case.outline.diameter
     least = radius + error.low
     if not least >= thinnest:
         raise MisfitError(
-            f"vary.finger_radius: fingers of radius {radius:g} {case.unit} would be down to "
+            f"vary.{name}: fingers of radius {radius:g} {case.unit} would be down to "
             f"{least:g}; {thinnest - radius:g} {case.unit} or more is allowed"
             + (" (use truncated)" if math.isinf(least) else "")
         )
 
 
-def _check_triangle(vary: Mapping[str, Distribution], case: Case) -> None:
+def _check_triangle(angles: Sequence[str], vary: Mapping[str, Distribution], case: Case) -> None:
     """Every pair of errors of the two angles must leave a hand."""
     none = Distribution("fixed", (0.0,))
-    ends = [vary.get(name, none).reach for name in ("phi_1", "phi_2")]
+    ends = [vary.get(name, none).reach for name in angles]
     phi = HandShape.from_contacts(case.contacts).phi
     for errors in product(*ends):
         try:
             HandShape.from_angles(phi[0] + errors[0], phi[1] + errors[1])
         except HandError as error:
-            names = " and ".join(f"vary.{n}" for n in ("phi_1", "phi_2") if n in vary)
+            names = " and ".join(f"vary.{n}" for n in angles if n in vary)
             off = " and ".join(f"{math.degrees(one):.4g}" for one in errors)
             planned = ", ".join(f"{math.degrees(one):.4g}" for one in phi)
             raise MisfitError(

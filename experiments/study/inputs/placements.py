@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.variables import fields_of
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
@@ -29,6 +31,25 @@ _STREAM, _NOMINAL = 12, 13
 
 _ROOMY: Final = 1000
 """Placements of the guaranteed set among which the nominal one is looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandError:
+    """How far off its place the hand stands, (n,) each: lengths in the case's unit, [rad]."""
+
+    x: FloatArray
+    y: FloatArray
+    theta: FloatArray
+    sigma: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class SeenError:
+    """How far off the sensor sees the object, (n,) each: lengths in the case's unit, [rad]."""
+
+    x: FloatArray
+    y: FloatArray
+    theta: FloatArray
 
 
 class Intended:
@@ -98,20 +119,21 @@ def moved(
 ) -> FloatArray:
     """True placements (n, 4) of the hand in the object's frame. Sigma may come out negative.
 
-    ``values`` are those of the placement variables, ``middles`` those of the true unit hands, (n,)
+    ``values`` are those of all inputs, ``middles`` those of the true unit hands, (n,)
     each: a hand of another shape stands with its middle where the planned one's should be.
     """
+    hand, seen = HandError(**fields_of("hand", values)), SeenError(**fields_of("seen", values))
     x, y, theta, sigma = intended.T
     middle = complex(cage.hand.z.mean())
     at = x + 1j * y + sigma * np.exp(1j * theta) * middle
-    at = at + values["place_x"] + 1j * values["place_y"]
-    theta = theta + values["place_theta"]
-    sigma = sigma + values["place_sigma"]
+    at = at + hand.x + 1j * hand.y
+    theta = theta + hand.theta
+    sigma = sigma + hand.sigma
     d = at - sigma * np.exp(1j * theta) * middles
-    turn = np.exp(1j * values["bias_theta"])
+    turn = np.exp(1j * seen.theta)
     centre = complex(*cage.outline.centroid.tolist())
-    d = centre + turn * (d - centre) + values["bias_x"] + 1j * values["bias_y"]
-    return np.column_stack([d.real, d.imag, theta + values["bias_theta"], sigma])
+    d = centre + turn * (d - centre) + seen.x + 1j * seen.y
+    return np.column_stack([d.real, d.imag, theta + seen.theta, sigma])
 
 
 def collides(outline: Outline, fingers: FloatArray, radius: float, tolerance: float) -> bool:

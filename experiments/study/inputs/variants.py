@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.variables import VARIABLES, fields_of
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum
 from icage.errors import IcageError
@@ -24,17 +25,37 @@ from icage.outline import Outline
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
-GEOMETRY: Final = (
-    "outline_scale", "outline_noise", "finger_radius", "phi_1", "phi_2", "linkage_play"
-)  # fmt: skip
-"""Variables that change what is compiled."""
-
 MODES: Final = 8
 """Waves round the boundary, at most, of its noise."""
 
 _STREAM: Final = 14
 
-Key = tuple[float, ...]
+
+class ShapeError(NamedTuple):
+    """How object and hand differ from the planned ones: all that changes what is compiled.
+
+    Attributes
+    ----------
+    scale:
+        [1] Size of the object over the planned one.
+    noise:
+        [unit] Root mean square of the boundary's displacement.
+    finger_radius, phi_1, phi_2:
+        [unit, rad, rad] Errors of the discs, and of the hand's angles at fingers 1 and 2.
+    play:
+        [unit] How far a finger yields under the closing force.
+    """
+
+    scale: float
+    noise: float
+    finger_radius: float
+    phi_1: float
+    phi_2: float
+    play: float
+
+
+Key = tuple[ShapeError, int] | None
+"""What a variant depends on, with the number of its boundary's shape; None is the planned one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,31 +88,31 @@ class Variants:
         self._config, self._cage = config, cage
         self.planned = self._compiled(cage.outline, cage.hand, cage.finger_radius, 0.0, True)
         self._supports: dict[int, Supports] = {}
+        usual = {name: one.nominal for name, one in VARIABLES.items()}
+        self._usual = ShapeError(**fields_of("shape", usual))
 
     def key(self, values: Mapping[str, FloatArray], row: int, shape: int) -> Key:
-        """What a trial's variant depends on; () for the planned one.
-
-        ``shape`` numbers the shapes of the boundary's noise.
-        """
-        given = tuple(float(values[name][row]) for name in GEOMETRY)
-        usual = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        if given == usual:
-            return ()
-        return (*given, float(shape)) if given[1] > 0.0 else given
+        """The key of a trial's variant; ``shape`` numbers the shapes of the boundary's noise."""
+        columns = fields_of("shape", values)
+        given = ShapeError(**{field: float(column[row]) for field, column in columns.items()})
+        if given == self._usual:
+            return None
+        return given, shape if given.noise > 0.0 else 0
 
     def make(self, key: Key) -> Variant | None:
         """The variant of a key, None if no such object or hand exists (it would cross itself)."""
-        if not key:
+        if key is None:
             return self.planned
-        scale, noise, radius_error, phi_1, phi_2, play = key[:6]
+        error, shape = key
         cage = self._cage
         try:
-            outline = self._outline(scale, noise, int(key[6]) if noise > 0.0 else 0)
+            outline = self._outline(error.scale, error.noise, shape)
             hand = cage.hand
-            if phi_1 or phi_2:
+            if error.phi_1 or error.phi_2:
                 first, second = cage.hand.phi
-                hand = HandShape.from_angles(first + phi_1, second + phi_2)
-            return self._compiled(outline, hand, cage.finger_radius + radius_error, play, False)
+                hand = HandShape.from_angles(first + error.phi_1, second + error.phi_2)
+            radius = cage.finger_radius + error.finger_radius
+            return self._compiled(outline, hand, radius, error.play, False)
         except IcageError:
             return None
 

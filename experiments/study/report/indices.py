@@ -166,8 +166,12 @@ def _interval(f: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, Floa
     be repeated, and its BCa interval is NaN for a group that does nothing.
     """
     base = f.shape[1]
+
+    def estimate(rows: IntArray) -> FloatArray:
+        return _estimate(f[:, rows])
+
     found = bootstrap(
-        (np.arange(base),), lambda rows: _estimate(f[:, rows]), method="percentile",
+        (np.arange(base),), estimate, method="percentile",
         n_resamples=RESAMPLES, batch=max(1, 2**20 // base), confidence_level=CONFIDENCE,
         vectorized=False, rng=rng,
     )  # fmt: skip

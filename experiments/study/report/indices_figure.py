@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from experiments.figures.drawing.palette import FINGERS, INK, Colour, tint
-from experiments.study.report.names import WORDS
+from experiments.study.inputs.variables import label
 from experiments.study.report.pictures import (
     MARGIN,
     ROW,
@@ -69,7 +69,7 @@ def _indices_page(document: Mapping[str, Any], found: Mapping[str, Any]) -> Page
     axes.set_xlim(least - 0.01, most + 0.01)
     axes.set_ylim(-0.6, len(groups) - 0.4)
     plain(axes, "x")
-    axes.set_yticks(range(len(groups)), [WORDS.get(g["name"], g["name"]) for g in groups])
+    axes.set_yticks(range(len(groups)), [label(g["name"]) for g in groups])
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0, labelsize=8)
     handles = [Rectangle((0, 0), 1, 1, fc=tint(c, 0.55), lw=0) for c in (_TOTAL, _FIRST)]

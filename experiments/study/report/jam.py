@@ -26,10 +26,11 @@ from experiments.figures.drawing.palette import (
     PAPER,
     QUIET_INK,
 )
-from experiments.figures.drawing.shapes import as_path
+from experiments.figures.drawing.shapes import as_pair, as_path
+from experiments.study.inputs.variables import input_of
 from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
 from experiments.study.run.replayed import StudyRerun, filmed_scene, rerun_trial
-from experiments.study.run.shard import worlds_of
+from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.closing.one import data_at
@@ -87,7 +88,7 @@ def draw_jam(done: StudyRerun, path: Path) -> None:
     variant = ran.variants[int(ran.which[0])]
     end = ran.closings.closings.end[0]
     fingers = variant.hand.fingers(end)
-    mu = float(ran.values["friction"][0])
+    mu = float(ran.values[input_of("world", "friction").name][0])
     size, target = variant.outline.diameter, study.cage.contacts
     parts = [variant.outline.polygon, shapely.MultiPoint(np.vstack([fingers, target]))]
     x_0, y_0, x_1, y_1 = shapely.total_bounds(np.array(parts, dtype=object))
@@ -135,7 +136,7 @@ def _draw_press(axes: Axes, one: Press, mu: float, length: float, most: float) -
     axes.add_patch(Polygon(np.vstack([one.point, arc]), fc=colour, ec="none", alpha=0.22, zorder=4))
     tip = one.point + length * one.force / most
     axes.annotate(
-        "", xy=tip, xytext=one.point, zorder=6,
+        "", xy=as_pair(tip), xytext=as_pair(one.point), zorder=6,
         arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0},
     )  # fmt: skip
 

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import pyarrow as pa
 import shapely
 
 from experiments.figures.drawing.shapes import tidied
 from experiments.figures.drawing.sheet import Bounds
+from experiments.io.arrow_table import Table
 from experiments.io.words import NOT_CLOSED
 from experiments.study.report.hexagons import Hexagons, bin_hexagons
 from experiments.study.report.map_layout import SCALE, Place, placed
@@ -58,7 +58,7 @@ class Closings:
     reached: BoolArray
 
     @classmethod
-    def of(cls, table: pa.Table, cage: Cage) -> Closings:
+    def of(cls, table: Table, cage: Cage) -> Closings:
         """Those of a study's table; starts are those of the planned hand."""
         closed = ~np.isin(np.array(table["outcome"].to_pylist()), list(NOT_CLOSED))
         names = ("start_x", "start_y", "start_theta", "start_sigma")
@@ -68,7 +68,7 @@ class Closings:
 
 def draw_map(
     document: Mapping[str, Any],
-    table: pa.Table,
+    table: Table,
     cage: Cage,
     regions: Sequence[FingerRegion],
     path: Path,
@@ -89,7 +89,7 @@ def draw_map(
 
 
 def map_page(
-    document: Mapping[str, Any], table: pa.Table, cage: Cage, regions: Sequence[FingerRegion]
+    document: Mapping[str, Any], table: Table, cage: Cage, regions: Sequence[FingerRegion]
 ) -> Page:
     """The figure itself, before it is written."""
     closings = Closings.of(table, cage)
@@ -194,9 +194,10 @@ def _cells(
     body = cage.outline.polygon.buffer(cage.finger_radius, quad_segs=32)
     out = bins.holding(~shapely.contains_xy(reach, *points.T))
     under = bins.holding(shapely.contains_xy(body, *points.T))
-    shapes = shapely.polygons(bins.corners)
-    outside = np.where(under, shapes, shapely.difference(shapes, body))
-    shapes = np.where(out, outside, shapely.intersection(shapes, reach))
+    whole = np.asarray(shapely.polygons(bins.corners), dtype=object)
+    clear = np.asarray(shapely.difference(whole, body), dtype=object)
+    within = np.asarray(shapely.intersection(whole, reach), dtype=object)
+    shapes = np.where(out, np.where(under, whole, clear), within)
     return Cells(list(shapes), bins.hits / bins.trials, bins.trials < FEWEST)
 
 

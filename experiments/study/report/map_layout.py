@@ -36,6 +36,9 @@ _NEAR: Final = 0.8
 _WIDER: Final = 1.3
 """[1] Close-ups in a row are made wider by up to this to fill it."""
 
+_WIDENED: Final = 3
+"""How often the panel of the whole is made wider, at most, to hold the others' frames."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -60,8 +63,8 @@ def placed(whole: Bounds, close_ups: Sequence[Bounds]) -> list[Place]:
     """
     if not close_ups:
         return list(_alike(whole))
-    for _ in range(4):  # panels may be wider than their windows: all frames lie in the whole
-        places = _best(whole, close_ups)
+    places = _best(whole, close_ups)
+    for _ in range(_WIDENED):  # panels may be wider than their windows: all lie in the whole
         frames = np.array([place.window for place in places])
         pad = 0.02 * (whole[2] - whole[0])
         least, most = frames[1:, :2].min(axis=0) - pad, frames[1:, 2:].max(axis=0) + pad
@@ -69,6 +72,7 @@ def placed(whole: Bounds, close_ups: Sequence[Bounds]) -> list[Place]:
             break
         low, high = np.minimum(whole[:2], least), np.maximum(whole[2:], most)
         whole = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+        places = _best(whole, close_ups)
     return places
 
 

@@ -9,37 +9,6 @@ from typing import Any, Final
 from experiments.io.intervals import wilson
 from experiments.study.inputs.variables import Variable, own_unit
 
-WORDS: Final = {
-    "place_x": "hand off its place, along x",
-    "place_y": "hand off its place, along y",
-    "place_theta": "hand turned",
-    "place_sigma": "hand open wider",
-    "bias_x": "object seen off, along x",
-    "bias_y": "object seen off, along y",
-    "bias_theta": "object seen turned",
-    "friction": "friction of the fingers",
-    "softness": "softness of contacts / usual",
-    "table_friction": "table friction / closing force",
-    "tilt": "tilt of the table",
-    "tilt_direction": "direction of the tilt",
-    "weight": "weight / closing force",
-    "mass": "mass / usual",
-    "inertia": "inertia / even plate",
-    "com_x": "centre of mass off, along x",
-    "com_y": "centre of mass off, along y",
-    "outline_scale": "object's size / planned",
-    "outline_noise": "displaced boundary, RMS",
-    "finger_radius": "error of the finger radius",
-    "phi_1": "error of phi_1",
-    "phi_2": "error of phi_2",
-    "linkage_play": "play of the linkage",
-    "speed": "closing speed / usual",
-    "force": "motor force / usual",
-    "placement": "placement of the hand",
-}
-"""Every variable, and the group of Saltelli's design that has the placement in it."""
-
-
 _COUNTS: Final = ("trials", "closed", "target", "near_target")
 """Of a bin."""
 

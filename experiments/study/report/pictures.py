@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ class Page:
 
     def text(self, x: float, y: float, words: str, size: float = 8.5, **given: Any) -> float:
         """A line of text on the baseline y, starting at x; its width, [pt]."""
-        style = {"color": INK, "va": "baseline", **given}
+        style: dict[str, Any] = {"color": INK, "va": "baseline", **given}
         text = self.figure.text(x / self.width, y / self.height, words, fontsize=size, **style)
         return float(text.get_window_extent().width * 72.0 / self.figure.dpi)
 
@@ -82,7 +82,7 @@ def write(figure: Figure, path: Path) -> None:
             figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
 
 
-def plain(axes: Axes, values: str = "y") -> None:
+def plain(axes: Axes, values: Literal["x", "y", "both"] = "y") -> None:
     """Thin lines, small numbers, no box, a grid along the axis of the values."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set(color=INK, linewidth=0.6)
@@ -90,4 +90,9 @@ def plain(axes: Axes, values: str = "y") -> None:
     axes.grid(axis=values, color=RULE, lw=0.4)
     axes.set_axisbelow(True)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value + 0.0:.6g}"))
+        axis.set_major_formatter(FuncFormatter(_tick))
+
+
+def _tick(value: float, place: int | None) -> str:
+    """A number below an axis, never "-0"."""
+    return f"{value + 0.0:.6g}"

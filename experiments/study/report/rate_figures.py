@@ -17,10 +17,10 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from experiments.figures.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
 from experiments.io.words import NOT_CLOSED
-from experiments.study.inputs.variables import VARIABLES
+from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.indices_figure import draw_indices
 from experiments.study.report.map import draw_map
-from experiments.study.report.names import WORDS, display, merged, percent
+from experiments.study.report.names import display, merged, percent
 from experiments.study.report.pictures import (
     MARGIN,
     ROW,
@@ -117,7 +117,7 @@ def _rates_page(
 def _label(name: str, unit: str, wide: float) -> list[str]:
     """Lines for below a panel: the input in words, and its unit."""
     shown = display(VARIABLES[name], unit)[1]
-    text = f"{WORDS[name]} [{shown}]" if shown else WORDS[name]
+    text = f"{label(name)} [{shown}]" if shown else label(name)
     return textwrap.wrap(text, max(20, int(wide / 4.2)))
 
 

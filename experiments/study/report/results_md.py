@@ -7,9 +7,9 @@ from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
 from experiments.io.words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
-from experiments.study.inputs.variables import VARIABLES
+from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.method import method
-from experiments.study.report.names import WORDS, display, merged, percent
+from experiments.study.report.names import display, merged, percent
 from experiments.study.report.summary import sentence
 
 _ENDS: Final = ("target", "other_grasp", "escaped")
@@ -141,7 +141,7 @@ def _caged(one: Mapping[str, Any]) -> str:
 
 def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
     yield ""
-    yield f"## {WORDS[name][0].upper()}{WORDS[name][1:]}"
+    yield f"## {label(name)[0].upper()}{label(name)[1:]}"
     yield ""
     yield f"`{name}`: {VARIABLES[name].help}."
     yield ""

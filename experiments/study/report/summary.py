@@ -7,8 +7,8 @@ from dataclasses import asdict
 from typing import Any, Final
 
 import numpy as np
-import pyarrow as pa
 
+from experiments.io.arrow_table import Table
 from experiments.io.intervals import wilson
 from experiments.io.words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
@@ -40,9 +40,7 @@ NEAR_ANGLE: Final = 0.1
 """[rad] ... if it is turned no further: what is lost of a grasp by friction is often no more."""
 
 
-def summary(
-    config: StudyConfig, design: Design, table: pa.Table, diameter: float
-) -> dict[str, Any]:
+def summary(config: StudyConfig, design: Design, table: Table, diameter: float) -> dict[str, Any]:
     """The findings, as they stand in ``study.json``; ``diameter`` of the planned object, [unit]."""
     reached = target_trials(table)
     outcomes = np.array(table["outcome"].to_pylist())
@@ -84,7 +82,7 @@ def summary(
     return found
 
 
-def _near(table: pa.Table, diameter: float) -> BoolArray:
+def _near(table: Table, diameter: float) -> BoolArray:
     """(n,) whether a trial ended near the target, whatever its outcome is called."""
     off, turned = (
         np.asarray(table[name].to_numpy(zero_copy_only=False), dtype=np.float64)
@@ -115,13 +113,13 @@ def independent(design: Design, count: int) -> BoolArray:
     return np.arange(count) % (len(design.groups) + 2) < 2
 
 
-def _grasps(table: pa.Table, outcomes: Any) -> dict[str, int]:
+def _grasps(table: Table, outcomes: Any) -> dict[str, int]:
     """Trials per grasp of the plan, for those that ended in another one."""
     ids = table["grasp_id"].to_numpy()[outcomes == "other_grasp"]
     return {str(k): int((ids == k).sum()) for k in np.unique(ids).tolist()}
 
 
-def _verdicts(table: pa.Table, outcomes: Any, closed: BoolArray) -> Iterator[dict[str, Any]]:
+def _verdicts(table: Table, outcomes: Any, closed: BoolArray) -> Iterator[dict[str, Any]]:
     """What the planner said of the planned hand at the starts, and what became of the true one."""
     verdict = np.array(table["verdict"].to_pylist())
     caged = table["in_cage"].to_numpy(zero_copy_only=False)
@@ -138,7 +136,7 @@ def _verdicts(table: pa.Table, outcomes: Any, closed: BoolArray) -> Iterator[dic
                 }
 
 
-def _of(table: pa.Table, name: str, rows: BoolArray, how: Any) -> float | None:
+def _of(table: Table, name: str, rows: BoolArray, how: Any) -> float | None:
     values = np.asarray(table[name].to_numpy(zero_copy_only=False), dtype=np.float64)[rows]
     values = values[np.isfinite(values)]
     return float(how(values)) if len(values) else None

@@ -17,8 +17,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
 
-import pyarrow as pa
-
+from experiments.io.arrow_table import Table
 from experiments.io.versions import versions
 from experiments.study.run.document import study_of
 from experiments.study.run.shard import Study
@@ -63,7 +62,7 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     with _connected(distributed, address, wanted):  # before anything is written
         pass
 
-    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
+    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, Table]]:
         if not spans:
             return
         with _connected(distributed, address, wanted) as client:
@@ -73,7 +72,7 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
 
 
 @contextmanager
-def _connected(distributed: Any, address: str, wanted: Mapping[str, str]) -> Iterator[Any]:
+def _connected(distributed: Any, address: str, wanted: Mapping[str, str]) -> Generator[Any]:
     """A client whose workers were checked. What dask would log reaches the user as our errors."""
     _check_address(address)
     with _quiet():
@@ -112,7 +111,7 @@ def _client(distributed: Any, address: str) -> Any:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def _quiet() -> Generator[None]:
     logs = [logging.getLogger(name) for name in _LOGS]
     before = [log.level for log in logs]
     for log in logs:
@@ -126,7 +125,7 @@ def _quiet() -> Iterator[None]:
 
 def _results(
     client: Any, distributed: Any, text: str, spans: list[Span]
-) -> Iterator[tuple[Span, pa.Table]]:
+) -> Iterator[tuple[Span, Table]]:
     """Tables as they come, a few shards ahead of the cluster's threads, which come and go.
 
     Raises
@@ -166,7 +165,7 @@ def _results(
             client.cancel(list(named))
 
 
-def run_remote(text: str, span: Span) -> pa.Table:
+def run_remote(text: str, span: Span) -> Table:
     """On a worker: the table of a shard of the study with this document."""
     return shard_table(_study(text), span)
 

@@ -8,14 +8,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from experiments.study.inputs.config import StudyConfig
-from experiments.study.inputs.variables import DEGREE, PERCENT, VARIABLES
+from experiments.study.inputs.variables import DEGREE, PERCENT, VARIABLES, is_placement
 
 
 def command_line(document: Mapping[str, Any]) -> str:
     """The command for the study of a document, whatever it was given by."""
     config, default = document["config"], StudyConfig(case="").document()
     words = ["icage", "study", config["case"]]
-    if any(VARIABLES[name].group == "placement" for name in config["vary"]):
+    if any(is_placement(name) for name in config["vary"]):
         del default["starts"]  # it would be nominal
     for name, value in config.items():
         if name in ("case", "vary") or value is None or value == default.get(name):

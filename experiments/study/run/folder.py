@@ -20,6 +20,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from experiments.io.arrow_table import Table
 from icage.errors import InputError, OutputError
 from icage.formats.json_out import json_text
 from icage.formats.whole_files import whole_file
@@ -105,7 +106,7 @@ class StudyFolder:
         numbers = np.arange(span[0], span[1] + 1)
         return table is not None and np.array_equal(table["trial"].to_numpy(), numbers)
 
-    def _read(self, path: Path) -> pa.Table | None:
+    def _read(self, path: Path) -> Table | None:
         """A table of this study, every page of it as it was written; else None."""
         try:
             table = pq.read_table(path, page_checksum_verification=True)
@@ -115,7 +116,7 @@ class StudyFolder:
             return None
         return table if own else None
 
-    def keep(self, table: pa.Table, first: int) -> None:
+    def keep(self, table: Table, first: int) -> None:
         """Write a shard, whole and on the disk before it gets its name.
 
         Raises
@@ -129,12 +130,12 @@ class StudyFolder:
             path.parent.mkdir(parents=True, exist_ok=True)
         self._write(table, path)
 
-    def finish(self, table: pa.Table) -> None:
+    def finish(self, table: Table) -> None:
         """Write the whole table, then forget the shards."""
         self._write(table, self.path / TRIALS)
         self.clear()
 
-    def reopen(self, table: pa.Table) -> None:
+    def reopen(self, table: Table) -> None:
         """Make one shard of the whole table, for a study that goes on."""
         self.keep(table, 0)
         with self._writable():
@@ -176,7 +177,7 @@ class StudyFolder:
                 if _PART.fullmatch(path.name):
                     path.unlink()
 
-    def finished(self) -> pa.Table | None:
+    def finished(self) -> Table | None:
         """The whole table if it is there and of this study."""
         return self._read(self.path / TRIALS)
 
@@ -189,7 +190,7 @@ class StudyFolder:
                 f"{str(self.path)!r} cannot be written to: {error.strerror or error}"
             ) from error
 
-    def _write(self, table: pa.Table, path: Path) -> None:
+    def _write(self, table: Table, path: Path) -> None:
         words = {_KEY: self.fingerprint.encode()}
         with whole_file(path) as part, part.open("wb") as stream:
             pq.write_table(
@@ -201,7 +202,7 @@ class StudyFolder:
         _sync_folder(path.parent)
 
 
-def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, pa.Table]]:
+def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, Table]]:
     """(first trial, table) of shards, in order."""
     for (first, _), path in sorted(shards.items()):
         yield first, pq.read_table(path)

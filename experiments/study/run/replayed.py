@@ -19,7 +19,8 @@ from experiments.replay.recorded import RecordingError
 from experiments.study.run.document import study_of
 from experiments.study.run.folder import SHARDS, TRIALS, read_document
 from experiments.study.run.rows import table_of
-from experiments.study.run.shard import Ran, Study, run_trials, worlds_of
+from experiments.study.run.shard import Ran, Study, run_trials
+from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
 from icage.formats.whole_files import whole_file
 from sim.closing.judge import OUTCOMES

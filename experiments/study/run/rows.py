@@ -7,20 +7,21 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from experiments.io.arrow_table import Column, Table
 from experiments.study.run.shard import STUDY_OUTCOMES, Ran, Study
 from icage.arrays import BoolArray, FloatArray
 from icage.cells.membership import VERDICTS
 from sim.closing.judge import OUTCOMES, TARGET
 
 
-def table_of(study: Study, ran: Ran) -> pa.Table:
+def table_of(study: Study, ran: Ran) -> Table:
     """A row per trial. Lengths in the case's unit, angles in [rad], forces in [closing force]."""
     count, sizes = len(ran.trials), ran.sizes
     closings, answers = ran.closings.closings, ran.answers
     lost = np.ones(count, dtype=np.bool_)
     lost[ran.done] = ran.outcome[ran.done] == OUTCOMES.index("diverged")
 
-    def of_closings(values: Any) -> pa.Array:
+    def of_closings(values: Any) -> Column:
         whole = np.zeros(count, dtype=np.asarray(values).dtype)
         whole[ran.done] = values
         return pa.array(whole, mask=lost)
@@ -58,12 +59,12 @@ def _pose(prefix: str, placements: FloatArray) -> dict[str, Any]:
     }
 
 
-def _known(values: FloatArray) -> pa.Array:
+def _known(values: FloatArray) -> Column:
     """Numbers, null where there is none."""
     return pa.array(np.ascontiguousarray(values), mask=np.isnan(values))
 
 
-def target_trials(table: pa.Table) -> BoolArray:
+def target_trials(table: Table) -> BoolArray:
     """(n,) whether each trial ended in the target."""
     words = table["outcome"].to_pylist()
     return np.array([word == OUTCOMES[TARGET] for word in words], dtype=np.bool_)

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from experiments.cases.named import case_file
+from experiments.cases.named import is_shipped, named
 from experiments.cases.with_discs import physical_case
+from experiments.io.arrow_table import Table
 from experiments.io.options import check_folder
 from experiments.io.progress import stage_bar
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
@@ -31,7 +32,6 @@ from experiments.study.run.shards import Backend, on_threads, run_study
 from icage.case import Case
 from icage.formats.case_json import read_case
 from icage.formats.whole_files import whole_file
-from models import case_paths, object_names
 
 MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
 
@@ -114,7 +114,7 @@ def _with_file(path: Path, over: Mapping[str, Any]) -> dict[str, Any]:
     vary = {**table.get("vary", {}), **over.get("vary", {})}
     merged = {**table, **over, "vary": vary}
     case = merged.get("case")
-    if isinstance(case, str) and case not in object_names() and not Path(case).is_absolute():
+    if isinstance(case, str) and not is_shipped(case) and not Path(case).is_absolute():
         merged["case"] = str(path.parent / case)
     return merged
 
@@ -123,14 +123,15 @@ def _case(table: Mapping[str, Any]) -> Case:
     name, grasp = table["case"], table.get("grasp", 1)
     if not isinstance(name, str):
         raise ConfigError(f"case is {name!r}; a word is needed")
-    if name in object_names() and not Path(name).is_file():
-        paths = case_paths(name)
+    given = named(name)
+    paths = given.cases
+    if given.shipped is not None:
         if isinstance(grasp, int) and not 1 <= grasp <= len(paths):
             raise ConfigError(f"grasp is {grasp}; {name} has grasps 1 to {len(paths)}")
         return read_case(paths[grasp - 1] if isinstance(grasp, int) else paths[0])
     if grasp != 1:
         raise ConfigError(f"grasp is {grasp!r}; a case file has one grasp")
-    return read_case(case_file(name))
+    return read_case(paths[0])
 
 
 def run_session(
@@ -194,7 +195,7 @@ def _write_page(document: dict[str, Any], folder: Path) -> None:
         part.write_text(results_page(document, command_line(document)), encoding="utf-8")
 
 
-def _draw(study: Study, document: dict[str, Any], table: Any, folder: Path) -> None:
+def _draw(study: Study, document: dict[str, Any], table: Table, folder: Path) -> None:
     from experiments.figures.plan import figure_regions
     from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
 

@@ -16,6 +16,7 @@ from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.placements import Intended, collides, moved
 from experiments.study.inputs.variants import Key, Variant, Variants
+from experiments.study.run.worlds import slope_of, worlds_of
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.case import Case
@@ -23,7 +24,6 @@ from icage.cells.membership import COLLIDES, Answers, query
 from icage.tolerance import COLLISION
 from sim.closing.judge import JAMMED, OUTCOMES, UNMATCHED, Tolerances, grasp_errors, judge
 from sim.closing.outcome import ClosingOutcomes
-from sim.closing.varied import Worlds
 from sim.closing.varied_shapes import VariedOutcomes, close_varied
 
 STUDY_OUTCOMES: Final = (*OUTCOMES, *NOT_CLOSED)
@@ -111,8 +111,8 @@ def run_trials(study: Study, trials: IntArray) -> Ran:
         rows = done[here]
         found = _judged(study, known[number], closings.closings.picked(here))
         outcome[rows], grasp_id[rows], errors[rows] = found
-    rough = (values["friction"] > 0.0) | (values["table_friction"] > 0.0)
-    held_up = rough | ((values["tilt"] > 0.0) & (values["weight"] > 0.0))
+    rough = (worlds.friction > 0.0) | (worlds.table_friction > 0.0)
+    held_up = rough | slope_of(values).pulls
     outcome[(outcome == UNMATCHED) & held_up] = JAMMED
     return Ran(
         trials, values, meant, starts, answers, outcome, grasp_id, errors, done, closings, known,
@@ -148,29 +148,6 @@ def _collides(variant: Variant, start: FloatArray) -> bool:
         return True
     fingers = variant.hand.fingers(start)
     return collides(variant.outline, fingers, variant.finger_radius, COLLISION)
-
-
-def worlds_of(values: dict[str, FloatArray], starts: FloatArray, sizes: FloatArray) -> Worlds:
-    """Worlds (n) of true objects with diameters ``sizes`` (n,).
-
-    The table's slope is told in the object's axes at the start, the engine's gravity in the
-    palm's: turned back by theta. Weight goes with the mass.
-    """
-    pull = values["weight"] * np.sin(values["tilt"])
-    direction = values["tilt_direction"] - starts[:, 2]
-    return Worlds(
-        friction=values["friction"],
-        softness=values["softness"],
-        table_friction=values["table_friction"],
-        gravity_x=pull * np.cos(direction),
-        gravity_y=pull * np.sin(direction),
-        mass=values["mass"],
-        inertia=values["inertia"],
-        com_x=values["com_x"] / sizes,
-        com_y=values["com_y"] / sizes,
-        speed=values["speed"],
-        force=values["force"],
-    )
 
 
 def _judged(

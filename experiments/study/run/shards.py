@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 
+from experiments.io.arrow_table import Table
 from experiments.io.intervals import stopped_at
 from experiments.study.run.folder import StudyFolder, read_shards
 from experiments.study.run.rows import table_of, target_trials
@@ -27,7 +28,7 @@ Span = tuple[int, int]
 Report = Callable[[int, int], None]
 """Progress: (trials done, all)."""
 
-Backend = Callable[[Study, list[Span]], Generator[tuple[Span, pa.Table]]]
+Backend = Callable[[Study, list[Span]], Generator[tuple[Span, Table]]]
 """Runs spans and yields their tables, in any order. Closed early, it stops."""
 
 
@@ -42,7 +43,7 @@ class Stopped:
 
 def run_study(
     study: Study, folder: StudyFolder, backend: Backend, size: int, report: Report
-) -> tuple[pa.Table, Stopped]:
+) -> tuple[Table, Stopped]:
     """Run what is missing, keep it shard by shard, and write the whole table.
 
     The table is the same whatever ran before, in whatever order and in shards of whatever size.
@@ -129,7 +130,7 @@ class _Prefix:
             self.stop = _stop(self._study, np.concatenate(self._reached))
 
 
-def _check_whole(table: pa.Table, count: int) -> None:
+def _check_whole(table: Table, count: int) -> None:
     """Nothing lost, nothing twice: trials 0..count-1, each once."""
     if not np.array_equal(table["trial"].to_numpy(), np.arange(count)):
         raise RuntimeError("the shards of this study do not hold every trial exactly once")
@@ -138,9 +139,9 @@ def _check_whole(table: pa.Table, count: int) -> None:
 def on_threads(threads: int) -> Backend:
     """Shards on a pool of threads of this process; the engine and our kernels share the cores."""
 
-    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, pa.Table]]:
+    def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, Table]]:
         waiting = iter(spans)
-        running: dict[Future[pa.Table], Span] = {}
+        running: dict[Future[Table], Span] = {}
         pool = ThreadPoolExecutor(threads)
         try:
             with no_log():
@@ -160,7 +161,7 @@ def on_threads(threads: int) -> Backend:
     return backend
 
 
-def shard_table(study: Study, span: Span) -> pa.Table:
+def shard_table(study: Study, span: Span) -> Table:
     """The table of trials first..last."""
     trials = np.arange(span[0], span[1] + 1)
     return table_of(study, run_trials(study, trials))

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.stats import binom, binomtest
 
-from benchmarks.coverage import exact_stops, looks, simulated_stops
 from experiments.io.intervals import (
     AT_LEAST,
     LOOK_EVERY,
@@ -17,6 +16,7 @@ from experiments.io.intervals import (
     wilson,
     wilson_bounds,
 )
+from tests.oracles.against_itself.stopping import exact_stops, looks, simulated_stops
 
 
 @pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])

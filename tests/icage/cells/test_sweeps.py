@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.sweeps import disc_targets, point_targets
-from benchmarks.sweeps.levels import Levels, difference
-from benchmarks.sweeps.runner import Outcome
+from tests.oracles.against_itself import disc_targets, point_targets
+from tests.oracles.against_itself.levels import Levels, difference
+from tests.oracles.against_itself.outcome import Outcome
 
 SEED = 2018
 

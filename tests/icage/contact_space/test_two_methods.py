@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.sweeps.two_methods import judge_discs, judge_large, judge_points, judge_trees
+from tests.oracles.against_itself.two_methods import (
+    judge_discs,
+    judge_large,
+    judge_points,
+    judge_trees,
+)
 
 SEED = 41
 

@@ -29,7 +29,9 @@ from experiments.study.inputs.distributions import (
     parse_distribution,
 )
 from experiments.study.inputs.fields import HELP
-from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES, listing, read_variable
+from experiments.study.inputs.read_variable import read_variable
+from experiments.study.inputs.variable_list import listing
+from experiments.study.inputs.variables import GROUPS, PAIRS, VARIABLES
 from experiments.study.run.command import command_line
 from experiments.study.run.session import session_of
 from icage.case import Case

@@ -24,14 +24,14 @@ from experiments.io.intervals import wilson
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.distributions import Distribution
-from experiments.study.inputs.variables import VARIABLES
+from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report import indices_figure
 from experiments.study.report import map as study_map
 from experiments.study.report import rate_figures as figures
 from experiments.study.report.hexagons import bin_hexagons
 from experiments.study.report.map import CROSSES, Closings, map_page
 from experiments.study.report.map_layout import placed
-from experiments.study.report.names import WORDS, merged, percent
+from experiments.study.report.names import merged, percent
 from experiments.study.report.pictures import WIDE, Page, settings
 from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
 from experiments.study.report.summary import summary
@@ -155,8 +155,10 @@ def assert_legible(page: Page) -> None:
         assert a.intersection(b).area <= 0.1 * min(a.area, b.area), (one, other)
 
 
-def test_every_variable_has_words():
-    assert set(WORDS) == {*VARIABLES, "placement"}
+def test_every_variable_has_words_of_its_own():
+    words = [label(name) for name in (*VARIABLES, "placement")]
+    assert all(words)
+    assert len(set(words)) == len(words)
 
 
 def test_rates_have_a_panel_per_varying_input_with_its_unit():
@@ -393,7 +395,7 @@ def test_indices_are_drawn_largest_total_on_top(tmp_path: Path):
     document, _ = study(1000, collisions=0, sampling="saltelli",
                         vary={n: VARY[n] for n in ("friction", "tilt", "place_x")})  # fmt: skip
     found = document["found"]["indices"]
-    totals = {WORDS[g["name"]]: g["total"] for g in found["groups"]}
+    totals = {label(g["name"]): g["total"] for g in found["groups"]}
     with settings():
         page = indices_figure._indices_page(document, found)
     names = [t.get_text() for t in page.figure.axes[0].get_yticklabels()]

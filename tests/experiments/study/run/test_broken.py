@@ -19,7 +19,6 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from benchmarks.kills import survive
 from experiments.study.run import folder as folders
 from experiments.study.run.folder import StudyFolder
 from experiments.study.run.session import session_of
@@ -27,6 +26,7 @@ from experiments.study.run.shard import Study
 from experiments.study.run.shards import Span, run_study
 from tests.experiments.commands.runner import here
 from tests.experiments.study.studies import TRIALS, VARIED, Studied, failing, left_alone, t_file
+from tests.oracles.against_itself.kills import survive
 
 posix = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals and limits")
 

@@ -24,8 +24,8 @@ from experiments.study.run.shard import (
     Study,
     _judged,
     run_trials,
-    worlds_of,
 )
+from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.case import Case

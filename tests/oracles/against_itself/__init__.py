@@ -1,0 +1,1 @@
+"""What tests and benchmarks share: the program compared with itself where it must not differ."""
