@@ -7,6 +7,7 @@ drawn in milliseconds, with nothing but what the package depends on anyway.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
@@ -21,6 +22,16 @@ Pixels = NDArray[np.uint8]
 """(height, width, 4), red, green, blue, alpha."""
 
 _CIRCLE = Path.unit_circle()
+
+
+@dataclass(frozen=True, slots=True)
+class Pen:
+    """How a line is drawn: width and dashes in [pixel]."""
+
+    colour: Colour
+    width: float = 1.0
+    dash: Sequence[float] | None = None
+    alpha: float = 1.0
 
 
 class Canvas:
@@ -52,23 +63,20 @@ class Canvas:
         *,
         fill: Colour | None = None,
         alpha: float = 1.0,
-        edge: Colour | None = None,
-        width: float = 1.0,
-        dash: Sequence[float] | None = None,
-        edge_alpha: float = 1.0,
+        pen: Pen | None = None,
     ) -> None:
-        """A path, filled and outlined; ``to_pixels`` maps it to pixels with y down."""
+        """A path, filled, and outlined by the pen; ``to_pixels`` maps it to pixels with y down."""
         gc = self._agg.new_gc()
         gc.set_joinstyle("round")
-        gc.set_capstyle("round" if dash is None else "butt")
+        gc.set_capstyle("round" if pen is None or pen.dash is None else "butt")
         if self._clip is not None:
             gc.set_clip_rectangle(self._clip)
-        if edge is None:
+        if pen is None:
             gc.set_linewidth(0.0)
         else:
-            gc.set_foreground((*edge, edge_alpha), isRGBA=True)
-            gc.set_linewidth(width)
-            gc.set_dashes(0.0, None if dash is None else list(dash))
+            gc.set_foreground((*pen.colour, pen.alpha), isRGBA=True)
+            gc.set_linewidth(pen.width)
+            gc.set_dashes(0.0, None if pen.dash is None else list(pen.dash))
         upwards = (to_pixels or Affine2D()) + Affine2D().scale(1.0, -1.0).translate(
             0.0, self.height
         )
@@ -85,13 +93,8 @@ class Canvas:
         alpha: float = 1.0,
     ) -> None:
         """A polyline through points (n, 2)."""
-        self.path(
-            Path(np.asarray(points, dtype=np.float64)),
-            edge=colour,
-            width=width,
-            dash=dash,
-            edge_alpha=alpha,
-        )
+        pen = Pen(colour, width, dash, alpha)
+        self.path(Path(np.asarray(points, dtype=np.float64)), pen=pen)
 
     def box(self, box: tuple[float, float, float, float], fill: Colour, alpha: float = 1.0) -> None:
         """A filled rectangle (left, top, right, bottom)."""
@@ -111,7 +114,8 @@ class Canvas:
         """A disc."""
         x, y = np.asarray(centre, dtype=np.float64).tolist()
         place = Affine2D().scale(radius).translate(x, y)
-        self.path(_CIRCLE, place, fill=fill, alpha=alpha, edge=edge, width=width, edge_alpha=alpha)
+        pen = None if edge is None else Pen(edge, width, alpha=alpha)
+        self.path(_CIRCLE, place, fill=fill, alpha=alpha, pen=pen)
 
     def text(
         self,

@@ -13,7 +13,7 @@ import shapely
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.canvas import Canvas, Pen
 from experiments.figures.drawing.caption import DARK, LIGHT
 from experiments.figures.drawing.palette import (
     FINGERS,
@@ -62,10 +62,8 @@ class HandView:
         self._draw_rails(canvas)
         place = self._place(qpos)
         for colour, alpha, path in self._regions:
-            canvas.path(
-                path, place, fill=colour, alpha=alpha, edge=colour, width=1.0, edge_alpha=0.8
-            )
-        canvas.path(self._object, place, fill=OBJECT_FILL, edge=OBJECT_EDGE, width=1.8)
+            canvas.path(path, place, fill=colour, alpha=alpha, pen=Pen(colour, alpha=0.8))
+        canvas.path(self._object, place, fill=OBJECT_FILL, pen=Pen(OBJECT_EDGE, 1.8))
         self._draw_goal(canvas)
         for k, centre in enumerate(self.fingers(start)):
             canvas.disc(centre, self.radius, None, FINGERS[k], 1.4, alpha=0.6)
@@ -115,9 +113,8 @@ class HandView:
 
     def _draw_goal(self, canvas: Canvas) -> None:
         """Where the object will stand in the hand: a dashed outline."""
-        canvas.path(
-            self._object, self._place(self._goal), edge=QUIET_INK, width=1.6, dash=(5.0, 4.0)
-        )
+        pen = Pen(QUIET_INK, 1.6, (5.0, 4.0))
+        canvas.path(self._object, self._place(self._goal), pen=pen)
 
 
 def _normal_path(scene: Scene, region: FingerRegion) -> Path:

@@ -9,7 +9,7 @@ import shapely
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from experiments.figures.drawing.canvas import Canvas
+from experiments.figures.drawing.canvas import Canvas, Pen
 from experiments.figures.drawing.caption import DARK, LIGHT
 from experiments.figures.drawing.palette import FINGERS, OBJECT_EDGE, OBJECT_FILL, PAPER
 from experiments.figures.drawing.plots import Box
@@ -69,7 +69,7 @@ class ObjectView:
         place = self._place()
         for colour, alpha, path in self._regions:
             canvas.path(path, place, fill=colour, alpha=alpha)
-        canvas.path(self._object, place, fill=OBJECT_FILL, edge=OBJECT_EDGE, width=1.2)
+        canvas.path(self._object, place, fill=OBJECT_FILL, pen=Pen(OBJECT_EDGE, 1.2))
         canvas.clip(None)
 
     def draw_ways(self, canvas: Canvas, placements: FloatArray, alpha: float) -> None:
