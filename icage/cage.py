@@ -51,7 +51,10 @@ class Puncture:
 
 @dataclass(frozen=True, slots=True)
 class CageWork:
-    """What the search left behind, for queries and regions: internal to the planner."""
+    """What the search left behind, for queries and regions: internal to the planner.
+
+    It lies in the frame near the object (``icage.frame.NearFrame``), not in the object's own.
+    """
 
     search: Search
     tree: Tree

@@ -8,6 +8,7 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.method import CELLS
 from icage.discs.brackets import plan_discs
+from icage.frame import NearFrame
 from icage.hand import HandShape
 from icage.method import Engine
 from icage.outline import Outline
@@ -45,6 +46,10 @@ def plan(
     """
     points = np.asarray(contacts, dtype=np.float64)
     hand = HandShape.from_contacts(points)
+    frame = NearFrame.of(outline)
+    near, points = frame.outline_into(outline), frame.into(points)
     if finger_radius > 0.0:
-        return plan_discs(outline, hand, points, finger_radius, engine)
-    return engine.cage(outline, hand, points, outline, 0.0)
+        cage = plan_discs(near, hand, points, finger_radius, engine)
+    else:
+        cage = engine.cage(near, hand, points, near, 0.0)
+    return frame.cage_back(cage, outline)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from experiments.io.options import (
@@ -18,9 +19,10 @@ from experiments.io.options import (
 from experiments.io.options import seed as seed_option
 
 if TYPE_CHECKING:
-    from icage.arrays import FloatArray
     from icage.cage import Cage
     from icage.formats.case_json import Object
+    from icage.grasps.search import Aim
+    from icage.planned_grasps import PlannedGrasps
 
 _WORKERS = 2
 
@@ -85,10 +87,11 @@ def run(args: argparse.Namespace) -> int:
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
     if args.phi is not None and args.within is None:
-        contacts = _of_one_hand(thing, radius, args.phi)
+        planned, left_out = _of_one_hand(thing, radius, args.phi, args.aim), {}
     else:
-        contacts = _best(thing, radius, args)
-    cages = _planned(thing, radius, contacts, args.aim, args.top)
+        planned, left_out = _best(thing, radius, args)
+    cages = planned.cages[: args.top]
+    _tell(planned, left_out)
     document = {
         "format": "icage-grasps/1",
         "name": thing.name,
@@ -96,6 +99,8 @@ def run(args: argparse.Namespace) -> int:
         "finger_radius": radius,
         "aim": args.aim,
         "grasps": [_entry(cage, args.aim) for cage in cages],
+        "failed": [{"contacts": f.contacts, "why": f.why} for f in planned.failures],
+        **left_out,
     }
     if args.json is not None:
         write_json(document, args.json)
@@ -104,15 +109,19 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatArray]:
+def _best(
+    thing: Object, radius: float, args: argparse.Namespace
+) -> tuple[PlannedGrasps, dict[str, int]]:
+    """The best grasps of any hand, and how much the search has left out."""
     import os
     from math import radians
 
     import numpy as np
 
     from experiments.io.progress import stage_bar
-    from icage.grasps.search import Wanted, best_grasps
+    from icage.grasps.search import Wanted, ranked_grasps
     from icage.hand import HandShape
+    from icage.planned_grasps import planned_grasps
 
     near = None
     if args.phi is not None:
@@ -120,74 +129,71 @@ def _best(thing: Object, radius: float, args: argparse.Namespace) -> list[FloatA
         near = (radians(args.phi[0]), radians(args.phi[1]), radians(args.within))
 
     with stage_bar() as progress:
-        found = best_grasps(
+        found = ranked_grasps(
             thing.outline,
             finger_radius=radius,
-            top=args.top,
             wanted=Wanted(args.aim, args.corners, near),
             rng=np.random.default_rng(args.seed),
             workers=min(_WORKERS, os.cpu_count() or 1),
             progress=progress,
         )
-    return [candidate.contacts for candidate in found]
+    contacts = (candidate.contacts for candidate in found.candidates)
+    planned = planned_grasps(thing.outline, radius, contacts, args.aim, args.top)
+    left_out = {"triples_left_out": found.triples_left_out, "searches_broken_off": found.broken_off}
+    return planned, left_out
 
 
-def _of_one_hand(thing: Object, radius: float, phi: list[float]) -> list[FloatArray]:
+def _of_one_hand(thing: Object, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
     from icage.discs.offsets import offsets
     from icage.grasps.of_one_hand import grasps_of_hand
     from icage.hand import HandShape
+    from icage.planned_grasps import planned_grasps_of_hand
 
     hand = HandShape.from_angles_deg(phi[0], phi[1])
     grown = offsets(thing.outline, radius, 8).inner if radius > 0.0 else thing.outline
-    return grasps_of_hand(grown, hand)
+    found = grasps_of_hand(grown, hand)
+    return planned_grasps_of_hand(thing.outline, radius, hand, found, aim)
 
 
-def _planned(
-    thing: Object, radius: float, contacts: list[FloatArray], aim: str, top: int
-) -> list[Cage]:
-    """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
-    from icage.discs.true_curve import refine
-    from icage.errors import GraspError
-    from icage.hand import HandShape
-    from icage.planner import plan
+def _tell(planned: PlannedGrasps, left_out: dict[str, int]) -> None:
+    """What was not looked at or came to nothing, on standard error."""
+    import sys
 
-    cages: list[Cage] = []
-    for points in contacts:
-        if radius > 0.0:
-            solved = refine(thing.outline, HandShape.from_contacts(points), radius, points)
-            points = points if solved is None else solved
-        try:
-            cage = plan(thing.outline, points, radius)
-        except GraspError:
-            continue
-        if cage.verdict != "not_a_cage":
-            cages.append(cage)
-    return sorted(cages, key=lambda cage: -_score(cage, aim))[:top]
+    lines: list[str] = []
+    if left_out.get("triples_left_out"):
+        lines.append(
+            f"{left_out['triples_left_out']} triples of contacts were not drawn, at random"
+        )
+    if left_out.get("searches_broken_off"):
+        lines.append(f"{left_out['searches_broken_off']} searches were too large and broken off")
+    if planned.failures:
+        reasons = "; ".join(f"{count} {why}" for why, count in planned.reasons())
+        lines.append(
+            f"candidates that are no grasps of these fingers: {len(planned.failures)} ({reasons})"
+        )
+    for line in lines:
+        print(f"icage: {line}", file=sys.stderr)
 
 
-def _score(cage: Cage, aim: str) -> float:
-    """Ratio that ranks; levels that do not exist count as the largest sigma of the component."""
-    top = cage.sigma_max if cage.sigma_max is not None else cage.sigma_largest
-    assert top is not None
-    level = top if aim == "cage" or cage.sigma_first is None else cage.sigma_first
-    return level / cage.sigma_0
+def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
+    from icage.planned_grasps import score
 
-
-def _entry(cage: Cage, aim: str) -> dict[str, Any]:
     return {
         "contacts": cage.contacts,
         "phi_deg": cage.hand.phi_deg,
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
-        "score": _score(cage, aim),
+        "score": score(cage, aim),
         "verdict": cage.verdict,
         "free_fingers": cage.grasps[0].free_fingers,
         "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
     }
 
 
-def _print(thing: Object, radius: float, cages: list[Cage], aim: str) -> None:
+def _print(thing: Object, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
+    from icage.planned_grasps import score
+
     print(
         f"{thing.name}: {len(thing.outline)} vertices, finger radius {radius:g} {thing.unit}, "
         f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
@@ -198,8 +204,9 @@ def _print(thing: Object, radius: float, cages: list[Cage], aim: str) -> None:
         top = _ratio(cage.sigma_max, cage.sigma_0)
         phi = "({:.2f}, {:.2f})".format(*cage.hand.phi_deg)
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
-        score = _score(cage, aim)
-        print(f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}")
+        print(
+            f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}"
+        )
 
 
 def _ratio(level: float | None, sigma_0: float) -> str:

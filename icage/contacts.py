@@ -1,0 +1,114 @@
+"""Can three points be the finger centres of a grasp of this outline? What is wrong if not."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from icage.arrays import FloatArray
+from icage.errors import GraspError
+from icage.frame import NearFrame
+from icage.hand import HandShape
+from icage.outline import Outline
+from icage.tolerance import CONTACT_OFF
+
+LARGEST_RADIUS = 10.0
+"""[diameter] Largest finger radius accepted: beyond it the object is a speck among fingers."""
+
+_QUADRANT = 64
+"""Segments a quadrant of the offset that tells a closed pocket from the outside."""
+
+
+def check_contacts(
+    outline: Outline, contacts: FloatArray, finger_radius: float, unit: str = ""
+) -> None:
+    """Refuse contacts that no hand with these fingers can have on this outline.
+
+    Parameters
+    ----------
+    outline:
+        The object.
+    contacts:
+        (3, 2) finger centres, fingers 1, 2, 3.
+    finger_radius:
+        [unit] r >= 0; the centres are at distance r from the outline.
+    unit:
+        What lengths are in, for the messages.
+
+    Raises
+    ------
+    GraspError:
+        Radius out of range, a centre off the offset by more than 1e-6 of the diameter, inside the
+        object or in a pocket closed to the finger, two discs that overlap.
+    HandError:
+        Clockwise, collinear or coincident contacts.
+    """
+    limit = LARGEST_RADIUS * outline.diameter
+    unit = f" {unit}" if unit else ""
+    if not 0.0 <= finger_radius <= limit:
+        raise GraspError(
+            f"finger_radius is {finger_radius:g}{unit}; 0 to {limit:g}{unit} is allowed "
+            f"({LARGEST_RADIUS:g} diameters of the outline)"
+        )
+    HandShape.from_contacts(contacts)
+    _check_sides(contacts, finger_radius, unit)
+    _check_distances(outline, contacts, finger_radius, unit)
+    if finger_radius > 0.0:
+        _check_pockets(outline, contacts, finger_radius, unit)
+
+
+def _check_sides(contacts: FloatArray, r: float, unit: str) -> None:
+    for i, j in ((0, 1), (1, 2), (0, 2)):
+        side = float(np.hypot(*(contacts[j] - contacts[i])))
+        if side < 2.0 * r * (1.0 - 1e-12):
+            raise GraspError(
+                f"the discs of fingers {i + 1} and {j + 1} overlap: side {i + 1}-{j + 1} is "
+                f"{side:.9g}{unit}, at least 2 x finger_radius = {2.0 * r:.9g}{unit} is needed"
+            )
+
+
+def _check_distances(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
+    allowed = CONTACT_OFF * outline.diameter
+    points = shapely.points(contacts)
+    distances = np.asarray(shapely.distance(outline.polygon.exterior, points))
+    inside = np.asarray(shapely.contains_properly(outline.polygon, points))
+    allowed_place = f"{_at(r, unit)} (to {allowed:.3g}{unit})"
+    for k in range(3):
+        distance, place = float(distances[k]), f"contact {k + 1} at {contacts[k].tolist()}"
+        if inside[k] and distance > allowed:
+            raise GraspError(
+                f"{place} lies inside the outline, {distance:.6g}{unit} from it; "
+                f"a finger centre must be {allowed_place}"
+            )
+        if abs(distance - r) <= allowed:
+            continue
+        if distance < r:
+            raise GraspError(
+                f"{place} is {distance:.9g}{unit} from the outline, nearer than finger_radius = "
+                f"{r:.9g}{unit}: the disc enters the object or does not fit into the pocket there"
+            )
+        raise GraspError(
+            f"{place} is {distance:.9g}{unit} from the outline; "
+            f"a finger centre must be {allowed_place}"
+        )
+
+
+def _at(r: float, unit: str) -> str:
+    return "on it" if r == 0.0 else f"finger_radius = {r:.9g}{unit} away from it"
+
+
+def _check_pockets(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
+    """A centre inside the exterior ring of the offset stands in a pocket no disc can enter."""
+    frame = NearFrame.of(outline)
+    offset = frame.outline_into(outline).polygon.buffer(r, quad_segs=_QUADRANT)
+    exterior = shapely.Polygon(shapely.get_exterior_ring(offset))
+    # The chords of the offset's arcs lie inside it by at most this much.
+    chord = 2.0 * r * (1.0 - np.cos(np.pi / (4 * _QUADRANT))) + CONTACT_OFF * outline.diameter
+    points = shapely.points(frame.into(contacts))
+    within = np.asarray(shapely.contains_properly(exterior, points))
+    depths = np.asarray(shapely.distance(exterior.exterior, points))
+    for k in np.flatnonzero(within & (depths > chord)).tolist():
+        raise GraspError(
+            f"contact {k + 1} at {contacts[k].tolist()} lies in a pocket that finger_radius = "
+            f"{r:.9g}{unit} closes off: the disc cannot come in from outside"
+        )
