@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
+from icage.geometry.way_out import free_from
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from icage.values import Value
@@ -19,7 +20,6 @@ from icage.values import Value
 if TYPE_CHECKING:
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
-from icage.way_out import free_from
 
 Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
 
@@ -252,8 +252,8 @@ class Cage(Value):
     def escape_free_at(self) -> int | None:
         """First row of ``escape_path`` at which the hand can shrink to a point as it stands.
 
-        From there on nothing holds the object (see ``icage.way_out``); the rows after it only
-        show how the planner pinches the hand. None without an escape path.
+        From there on nothing holds the object (see ``icage.geometry.way_out``); the rows after
+        it only show how the planner pinches the hand. None without an escape path.
         """
         if self.escape_path is None:
             return None

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only
 from icage.contacts import as_contacts, check_contacts, check_radius
-from icage.errors import CaseError, GraspError
+from icage.errors import CaseError, GraspError, InputError
 from icage.grasp import Grasp
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -149,11 +149,13 @@ class Case(Value):
         >>> case.grasps(top=2)[0].score > 1.5
         True
         """
-        from icage.grasps.planned import planned_grasps
+        from icage.grasps.of_case import best_of_case, grasps_in
+        from icage.grasps.search import Wanted
 
+        if aim not in ("first", "cage"):
+            raise InputError(f"aim is {aim!r}; 'first' or 'cage' is needed")
         draws = np.random.default_rng(0) if rng is None else rng
-        found = planned_grasps(self, top, aim=aim, rng=draws, workers=workers, progress=progress)
-        return found.grasps
+        return grasps_in(best_of_case(self, top, Wanted(aim), draws, workers, progress), aim)
 
     def _repr_svg_(self) -> str:
         from icage.formats.picture import case_picture

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray
 from icage.errors import GraspError
+from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import CONTACT_OFF
@@ -47,7 +48,7 @@ def as_contacts(contacts: ArrayLike) -> FloatArray:
     return points
 
 
-def check_radius(finger_radius: float) -> float:
+def check_radius(finger_radius: object) -> float:
     """The radius as a float, or a GraspError: a finite number, 0 or more, is needed."""
     if not isinstance(finger_radius, Real) or isinstance(finger_radius, bool):
         raise GraspError(f"finger_radius is {finger_radius!r}; a number is needed")
@@ -137,11 +138,12 @@ def _at(r: float, unit: str) -> str:
 
 def _check_pockets(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
     """A centre inside the exterior ring of the offset stands in a pocket no disc can enter."""
-    offset = outline.polygon.buffer(r, quad_segs=_QUADRANT)
+    frame = NearFrame.of(outline)
+    offset = frame.outline_into(outline).polygon.buffer(r, quad_segs=_QUADRANT)
     exterior = shapely.Polygon(shapely.get_exterior_ring(offset))
     # The chords of the offset's arcs lie inside it by at most this much.
     chord = 2.0 * r * (1.0 - np.cos(np.pi / (4 * _QUADRANT))) + CONTACT_OFF * outline.diameter
-    points = shapely.points(contacts)
+    points = shapely.points(frame.into(contacts))
     within = np.asarray(shapely.contains_properly(exterior, points))
     depths = np.asarray(shapely.distance(exterior.exterior, points))
     for k in np.flatnonzero(within & (depths > chord)).tolist():

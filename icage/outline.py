@@ -12,7 +12,7 @@ from scipy.spatial.distance import pdist
 from shapely.validation import explain_validity
 
 from icage.arrays import FloatArray, read_only
-from icage.errors import OutlineError
+from icage.errors import GeometryError, OutlineError
 from icage.values import Value
 
 MAX_VERTICES = 2000
@@ -21,8 +21,12 @@ MAX_VERTICES = 2000
 LARGEST_COORDINATE = 1e12
 """Beyond this, coordinates of an object of ordinary size have lost half of their digits."""
 
-_THINNEST = 1e-12
-"""[diameter^2] Area below which a polygon counts as having none."""
+SMALLEST_DIAMETER = 1e-12
+"""[unit] The counterpart of ``LARGEST_COORDINATE``; far below it, squares of lengths vanish."""
+
+_THINNEST = 1e-9
+"""[diameter^2] Area below which a polygon counts as having none: a triangle of this area is seven
+times as wide as the bumps that the planner takes for straight (``tolerance.MERGE_VERTEX``)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -41,7 +45,8 @@ class Outline(Value):
     ------
     OutlineError:
         Not finite, fewer than three different vertices, self-crossing (says where), no area,
-        more than ``MAX_VERTICES`` vertices or coordinates beyond ``LARGEST_COORDINATE``.
+        more than ``MAX_VERTICES`` vertices, coordinates beyond ``LARGEST_COORDINATE`` or a
+        diameter below ``SMALLEST_DIAMETER``.
 
     Examples
     --------
@@ -58,6 +63,27 @@ class Outline(Value):
 
     def __init__(self, vertices: ArrayLike) -> None:
         points = _as_points(vertices)
+        if len(points) > MAX_VERTICES:
+            raise OutlineError(f"the outline has {len(points)} vertices; at most {MAX_VERTICES}")
+        self._settle(points)
+
+    @classmethod
+    def computed(cls, vertices: ArrayLike) -> Outline:
+        """A polygon that we made ourselves: of any number of vertices, and an error is ours.
+
+        Raises
+        ------
+        GeometryError:
+            Where ``Outline(vertices)`` raises OutlineError.
+        """
+        outline = object.__new__(cls)
+        try:
+            outline._settle(_as_points(vertices))
+        except OutlineError as error:
+            raise GeometryError(f"a computed polygon: {error}") from error
+        return outline
+
+    def _settle(self, points: FloatArray) -> None:
         repeated = (points == np.roll(points, 1, axis=0)).all(axis=1)
         points = points[~repeated] if not repeated.all() else points[:1]
         if len(points) < 3:
@@ -65,11 +91,19 @@ class Outline(Value):
                 f"the outline has {len(points)} different vertices; at least 3 are needed"
             )
         diameter = _diameter(points)
+        if diameter < SMALLEST_DIAMETER:
+            raise OutlineError(
+                f"the outline has the diameter {diameter:.3g}; "
+                f"at least {SMALLEST_DIAMETER:g} is needed"
+            )
         polygon = shapely.Polygon(points)
         if not polygon.is_valid:
             raise OutlineError(f"the outline is not simple: {explain_validity(polygon)}")
         if not polygon.area > _THINNEST * diameter**2:
-            raise OutlineError("the outline has no area")
+            raise OutlineError(
+                f"the outline has no area: {polygon.area / diameter**2:.3g} of its diameter "
+                f"squared; more than {_THINNEST:g} is needed"
+            )
         if not polygon.exterior.is_ccw:
             points = points[::-1].copy()
             polygon = shapely.Polygon(points)
@@ -105,8 +139,6 @@ def _as_points(vertices: ArrayLike) -> FloatArray:
         raise OutlineError(
             f"outline vertices must be pairs of numbers [x, y]; found an array {points.shape}"
         )
-    if len(points) > MAX_VERTICES:
-        raise OutlineError(f"the outline has {len(points)} vertices; at most {MAX_VERTICES}")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise OutlineError(f"outline vertex {bad[0]} is {points[bad[0]].tolist()}; must be finite")
@@ -124,7 +156,7 @@ def _diameter(points: FloatArray) -> float:
     if len(points) < 60:
         return float(pdist(points).max())
     try:
-        hull = points[ConvexHull(points).vertices]
+        hull = points[ConvexHull(points - points[0]).vertices]
     except QhullError:
         hull = points
     return float(pdist(hull).max())

@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.method import CELLS
+from icage.contacts import as_contacts
 from icage.discs.brackets import plan_discs
 from icage.errors import InputError
+from icage.geometry.near_frame import NearFrame
 from icage.grasp import Grasp
 from icage.hand import HandShape, Placement
 from icage.method import Method
@@ -66,12 +68,15 @@ def plan(
     """
     asked = _asked(case, grasp, finger_radius)
     chosen = _method(method)
-    contacts = asked.contacts
-    hand = HandShape.from_contacts(contacts)
-    if asked.finger_radius > 0.0:
-        cage = plan_discs(asked.outline, hand, contacts, asked.finger_radius, chosen)
+    outline, radius = asked.outline, asked.finger_radius
+    hand = HandShape.from_contacts(asked.contacts)
+    frame = NearFrame.of(outline)
+    near, contacts = frame.outline_into(outline), frame.into(asked.contacts)
+    if radius > 0.0:
+        cage = plan_discs(near, hand, contacts, radius, chosen)
     else:
-        cage = chosen.cage(asked.outline, hand, contacts, asked.outline, 0.0)
+        cage = chosen.cage(near, hand, contacts, near, 0.0)
+    cage = frame.cage_back(cage, outline)
     if isinstance(case, Case):
         return replace(cage, name=case.name, unit=case.unit)
     return cage
@@ -94,11 +99,12 @@ def _asked(
         if contacts is None and finger_radius is None:
             return case
         radius = case.finger_radius if finger_radius is None else finger_radius
-        target = case.contacts if contacts is None else contacts
+        target = case.contacts if contacts is None else as_contacts(contacts)
         return replace(case, target=target, finger_radius=radius)
     outline = case if isinstance(case, Outline) else Outline(case)
     radius = 0.0 if finger_radius is None else finger_radius
-    return Case(_UNNAMED, "m", outline, radius, contacts)
+    target = None if contacts is None else as_contacts(contacts)
+    return Case(_UNNAMED, "m", outline, radius, target)
 
 
 def _method(method: MethodName | Method) -> Method:

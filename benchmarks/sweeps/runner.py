@@ -68,12 +68,21 @@ def _call(job: tuple[Judge, int, int]) -> Outcome:
     return judge(seed, number)
 
 
-def report(name: str, outcomes: list[Outcome], chosen: argparse.Namespace, began: float) -> int:
+def report(
+    name: str,
+    outcomes: list[Outcome],
+    chosen: argparse.Namespace,
+    began: float,
+    tolerance: float | dict[str, float] = TOLERANCE,
+) -> int:
     """Print and write what was found; the exit code is 1 if anything disagreed or failed."""
     openings = [o.opening for o in outcomes if o.opening is not None]
     wide = sum(x > 1.05 for x in openings) + sum(o.verdict == "never_escapes" for o in outcomes)
     bad = [o for o in outcomes if o.disagreements]
     failed = [o for o in outcomes if o.exceptions]
+    worst_of: dict[str, float] = {}
+    for key, worst in (pair for o in outcomes for pair in o.worst_of.items()):
+        worst_of[key] = max(worst_of.get(key, 0.0), worst)
     summary: dict[str, Any] = {
         "format": "icage-sweep/1",
         "sweep": name,
@@ -82,10 +91,11 @@ def report(name: str, outcomes: list[Outcome], chosen: argparse.Namespace, began
         + (" --every-resolution" if getattr(chosen, "every_resolution", False) else ""),
         "targets": len(outcomes),
         "runs": sum(o.runs for o in outcomes),
-        "tolerance": TOLERANCE,
+        "tolerance": tolerance,
         "targets_that_disagree": len(bad),
         "exceptions": len(failed),
         "worst_difference_below_tolerance": max((o.worst for o in outcomes), default=0.0),
+        **({"worst_difference_below_each": worst_of} if worst_of else {}),
         "opening_above_1.05": wide,
         "share_above_1.05": round(wide / max(1, len(outcomes)), 4),
         "median_opening": round(float(np.median(openings)), 4) if openings else None,

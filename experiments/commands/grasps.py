@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from experiments.io.options import (
@@ -18,9 +19,10 @@ from experiments.io.options import (
 from experiments.io.options import seed as seed_option
 
 if TYPE_CHECKING:
-    from icage.arrays import FloatArray
     from icage.cage import Cage
     from icage.case import Case
+    from icage.grasps.planned import PlannedGrasps
+    from icage.grasps.search import Aim
 
 _WORKERS = 2
 
@@ -114,6 +116,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Search, plan the winners, list them."""
+    from dataclasses import replace
+
     from experiments.cases.named import find_object
     from icage.errors import InputError
     from icage.formats.json_out import write_json
@@ -128,10 +132,11 @@ def run(args: argparse.Namespace) -> int:
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
     if args.phi is not None and args.within is None:
-        contacts = _of_one_hand(thing, radius, args.phi)
+        planned = _of_one_hand(thing, radius, args.phi, args.aim)
     else:
-        contacts = _best(thing, radius, args)
-    cages = _planned(thing, radius, contacts, args.aim, args.top)
+        planned = _best(replace(thing, finger_radius=radius, target=None), args)
+    cages = planned.cages[: args.top]
+    _tell(planned)
     document = {
         "format": "icage-grasps/1",
         "name": thing.name,
@@ -139,6 +144,9 @@ def run(args: argparse.Namespace) -> int:
         "finger_radius": radius,
         "aim": args.aim,
         "grasps": [_entry(cage, args.aim) for cage in cages],
+        "failed": [{"contacts": f.contacts, "why": f.why} for f in planned.failures],
+        "triples_left_out": planned.triples_left_out,
+        "searches_broken_off": planned.searches_broken_off,
     }
     if args.json is not None:
         write_json(document, args.json)
@@ -147,91 +155,77 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _best(thing: Case, radius: float, args: argparse.Namespace) -> list[FloatArray]:
+def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
+    """The best grasps of any hand."""
     import os
     from math import radians
 
     import numpy as np
 
     from experiments.io.progress import stage_bar
-    from icage.grasps.search import Wanted, best_grasps
+    from icage.grasps.of_case import best_of_case
+    from icage.grasps.search import Wanted
     from icage.hand import HandShape
 
     near = None
     if args.phi is not None:
         HandShape.from_angles_deg(*args.phi)  # says what is wrong with the angles
         near = (radians(args.phi[0]), radians(args.phi[1]), radians(args.within))
-
+    wanted, rng = Wanted(args.aim, args.corners, near), np.random.default_rng(args.seed)
+    workers = min(_WORKERS, os.cpu_count() or 1)
     with stage_bar() as progress:
-        found = best_grasps(
-            thing.outline,
-            finger_radius=radius,
-            top=args.top,
-            wanted=Wanted(args.aim, args.corners, near),
-            rng=np.random.default_rng(args.seed),
-            workers=min(_WORKERS, os.cpu_count() or 1),
-            progress=progress,
-        )
-    return [candidate.contacts for candidate in found]
+        return best_of_case(case, args.top, wanted, rng, workers, progress)
 
 
-def _of_one_hand(thing: Case, radius: float, phi: list[float]) -> list[FloatArray]:
+def _of_one_hand(thing: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
     from icage.discs.offsets import offsets
     from icage.grasps.of_one_hand import grasps_of_hand
+    from icage.grasps.planned import planned_grasps_of_hand
     from icage.hand import HandShape
 
     hand = HandShape.from_angles_deg(phi[0], phi[1])
     grown = offsets(thing.outline, radius, 8).inner if radius > 0.0 else thing.outline
-    return grasps_of_hand(grown, hand)
+    found = grasps_of_hand(grown, hand)
+    return planned_grasps_of_hand(thing.outline, radius, hand, found, aim)
 
 
-def _planned(
-    thing: Case, radius: float, contacts: list[FloatArray], aim: str, top: int
-) -> list[Cage]:
-    """Cages of the contacts, best first; with discs on the true curve, unreachable ones dropped."""
-    from icage.discs.true_curve import refine
-    from icage.errors import GraspError
-    from icage.hand import HandShape
-    from icage.planner import plan
+def _tell(planned: PlannedGrasps) -> None:
+    """What was not looked at or came to nothing, on standard error."""
+    import sys
 
-    cages: list[Cage] = []
-    for points in contacts:
-        if radius > 0.0:
-            solved = refine(thing.outline, HandShape.from_contacts(points), radius, points)
-            points = points if solved is None else solved
-        try:
-            cage = plan(thing.outline, points, radius)
-        except GraspError:
-            continue
-        if cage.verdict != "not_a_cage":
-            cages.append(cage)
-    return sorted(cages, key=lambda cage: -_score(cage, aim))[:top]
+    lines: list[str] = []
+    if planned.triples_left_out:
+        lines.append(f"{planned.triples_left_out} triples of contacts were not drawn, at random")
+    if planned.searches_broken_off:
+        lines.append(f"{planned.searches_broken_off} searches were too large and broken off")
+    if planned.failures:
+        reasons = "; ".join(f"{count} {why}" for why, count in planned.reasons())
+        lines.append(
+            f"candidates that are no grasps of these fingers: {len(planned.failures)} ({reasons})"
+        )
+    for line in lines:
+        print(f"icage: {line}", file=sys.stderr)
 
 
-def _score(cage: Cage, aim: str) -> float:
-    """Ratio that ranks; levels that do not exist count as the largest sigma of the component."""
-    top = cage.sigma_max if cage.sigma_max is not None else cage.sigma_largest
-    assert top is not None
-    level = top if aim == "cage" or cage.sigma_first is None else cage.sigma_first
-    return level / cage.sigma_0
+def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
+    from icage.grasps.planned import score
 
-
-def _entry(cage: Cage, aim: str) -> dict[str, Any]:
     return {
         "contacts": cage.contacts,
         "phi_deg": cage.hand.phi_deg,
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
-        "score": _score(cage, aim),
+        "score": score(cage, aim),
         "verdict": cage.verdict,
         "free_fingers": cage.grasps[0].free_fingers,
         "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
     }
 
 
-def _print(thing: Case, radius: float, cages: list[Cage], aim: str) -> None:
+def _print(thing: Case, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
     from experiments.cases.named import size_words
+    from icage.grasps.planned import score
 
     print(
         f"{thing.name}: {len(thing.outline)} vertices, {_fingers(radius, thing.unit)}, "
@@ -244,8 +238,9 @@ def _print(thing: Case, radius: float, cages: list[Cage], aim: str) -> None:
         top = _ratio(cage.sigma_max, cage.sigma_0)
         phi = "({:.2f}, {:.2f})".format(*cage.hand.phi_deg)
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
-        score = _score(cage, aim)
-        print(f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}")
+        print(
+            f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}"
+        )
 
 
 def _fingers(radius: float, unit: str) -> str:

@@ -64,6 +64,10 @@ def run(args: argparse.Namespace) -> int:
     from icage.sampling import SamplingError
 
     check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
+    if args.video:
+        from sim.camera.renderer import check_graphics
+
+        check_graphics()
     name = given.shipped or cases[0].name
     try:
         with whole_folder(folder) as staging, stage_bar() as report:

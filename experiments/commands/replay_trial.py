@@ -50,6 +50,10 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--video {args.video!r}: a name ending in .mp4 is needed")
     if args.video is not None and args.json not in (None, "-") and same(args.json, args.video):
         raise InputError(f"--json and --video both name {args.json!r}")
+    if args.video is not None:
+        from sim.camera.renderer import check_graphics
+
+        check_graphics()
 
     if (folder / "study.json").is_file():
         from experiments.study.report import replayed_trial as replayed_words

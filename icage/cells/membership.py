@@ -19,7 +19,8 @@ from icage.cells.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.cells.kernels.tree import find_at
 from icage.cells.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.cells.work import CageWork, work_of
-from icage.errors import PlacementError
+from icage.errors import GeometryError, PlacementError
+from icage.geometry.near_frame import NearFrame
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
 from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
@@ -123,13 +124,21 @@ class EscapeLevels:
         self._memory: tuple[IntArray, FloatArray] = (keys.astype(np.int64), levels)
 
     def of(self, cells: IntArray, sigma: FloatArray) -> FloatArray:
-        """Escape level (n,) of each cell (n, 3); where it is not above sigma, any such level."""
+        """Escape level (n,) of each cell (n, 3); where it is not above sigma, any such level.
+
+        Raises
+        ------
+        GeometryError:
+            A search met more than ``CELL_LIMIT`` cells.
+        """
         terrain = self._terrain
         levels, known, of_known = escape_levels(
             terrain.pieces, terrain.z, cells, sigma, terrain.cap, terrain.worst, CELL_LIMIT,
             *self._memory,
         )  # fmt: skip
         self._memory = (np.asarray(known, dtype=np.int64), of_known)
+        if np.isnan(levels).any():
+            raise GeometryError(f"a search for the escape gave up after {CELL_LIMIT} cells")
         return levels
 
 
@@ -154,7 +163,7 @@ class Locator:
         return cls(terrain, low, size, start, items)
 
     def cells(self, fingers: FloatArray, tolerance: float) -> IntArray:
-        """Pieces of fingers (n, 3, 2) given in the object's frame; -1 where there is none."""
+        """Pieces of fingers (n, 3, 2) given in the terrain's frame; -1 where there is none."""
         return cells_of(
             self.terrain.pieces, fingers - self.terrain.origin, self.start, self.items,
             self.low[0], self.low[1], self.size, _GRID, tolerance,
@@ -181,6 +190,8 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     rows = checked_placements(placements)
     work = work_of(cage)
     sigma = rows[:, 3].copy()
+    frame = NearFrame.of(cage.outline)
+    rows = frame.rows_into(rows)
     fingers = cage.hand.fingers(rows)
     size = cage.outline.diameter
     verdict = np.full(len(rows), ESCAPES, dtype=np.int64)
@@ -191,7 +202,7 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     found = (
         np.full((len(rows), 3), -1) if work is None else _locator(work).cells(fingers, _HELD * size)
     )
-    collides = _collides(cage, fingers, found >= 0)
+    collides = _collides(cage, frame, fingers, found >= 0)
     verdict[collides] = COLLIDES
     if work is not None:
         free = np.flatnonzero(~collides)
@@ -216,15 +227,18 @@ def checked_placements(placements: FloatArray) -> FloatArray:
     return rows
 
 
-def _collides(cage: Cage, fingers: FloatArray, located: BoolArray) -> BoolArray:
+def _collides(cage: Cage, frame: NearFrame, fingers: FloatArray, located: BoolArray) -> BoolArray:
     """Which hands (n,) have a finger in the object; ``located`` (n, 3) are those a piece holds.
+
+    ``fingers`` (n, 3, 2) are in the frame near the object.
 
     A point finger in a piece is clear: the pieces touch the object no deeper than MERGE_VERTEX,
     which is less than COLLISION. The pieces around an inner polygon say nothing about a disc.
     """
     asked = ~located if cage.finger_radius == 0.0 else np.ones_like(located)
     inside = np.zeros(located.shape, dtype=np.bool_)
-    depth = depth_inside(cage.outline.vertices, fingers[asked], cage.finger_radius)
+    ring = frame.into(cage.outline.vertices)
+    depth = depth_inside(ring, fingers[asked], cage.finger_radius)
     inside[asked] = depth > COLLISION * cage.outline.diameter
     collides: BoolArray = np.any(inside, axis=1)
     return collides

@@ -11,8 +11,8 @@ from icage.cage import GraspMinimum, Puncture
 from icage.cells.solver import Configuration, Search, Terrain, Tree, below_escape
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
+from icage.geometry.way_out import corners_before_pinch
 from icage.tolerance import DEPTH_CUT, LEVEL
-from icage.way_out import corners_before_pinch
 
 
 class Joining(NamedTuple):

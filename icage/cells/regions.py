@@ -21,6 +21,8 @@ from icage.cells.kernels.region import all_sandwiches, least_points
 from icage.cells.solver import Terrain
 from icage.cells.work import CageWork, work_of
 from icage.errors import InputError
+from icage.geometry.geos import union
+from icage.geometry.near_frame import NearFrame
 from icage.tolerance import REGION_LEVEL
 
 Polygons: TypeAlias = NDArray[np.object_]
@@ -79,8 +81,10 @@ def caging_regions(
     chosen, below = _levels(cage, work, level, gap)
     name = _level_name(cage, chosen)
     regions: list[FingerRegion] = []
+    back = NearFrame.of(cage.outline).back
     for finger in range(3):
-        inner, outer, found = _bounds(work, finger, below, gap)
+        *bounds, found = _bounds(work, finger, below, gap)
+        inner, outer = (shapely.transform(bound, back) for bound in bounds)
         regions.append(FingerRegion(finger + 1, name, chosen, "inner", found, inner))
         regions.append(FingerRegion(finger + 1, name, chosen, "outer", found, outer))
     return tuple(sorted(regions, key=lambda r: (r.bound != "inner", r.finger)))
@@ -99,11 +103,13 @@ def outer_bounds(
     _, below = _levels(cage, work, level, gap)
     size = work.search.terrain.pieces.diameter
     bounds: list[shapely.MultiPolygon] = []
+    back = NearFrame.of(cage.outline).back
     for finger in range(3):
         nodes, points = _cells_and_points(work, finger, below)
         enough = _first_try(work, finger, below, gap, nodes, points)
         _, around = _sandwiches(work, finger, below, enough, nodes, points)
-        bounds.append(_union(work.search.terrain, around, _grid(around, gap, size)))
+        bound = _union(work.search.terrain, around, _grid(around, gap, size))
+        bounds.append(shapely.transform(bound, back))
     return tuple(bounds)
 
 
@@ -204,8 +210,8 @@ def _grid(polygons: Polygons, gap: float, size: float) -> float:
 
 
 def _union(terrain: Terrain, polygons: Polygons, grid: float) -> shapely.MultiPolygon:
-    """Union of convex polygons in the object's frame, outer rings counterclockwise."""
-    united = shapely.union_all(polygons, grid_size=grid)
+    """Union of convex polygons in the terrain's frame, outer rings counterclockwise."""
+    united = union(polygons, grid, "caging region")
     parts = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
     moved = shapely.transform(shapely.MultiPolygon(parts), lambda xy: xy + terrain.origin)
     oriented = [shapely.orient_polygons(p) for p in shapely.get_parts(moved)]

@@ -135,9 +135,13 @@ class Search:
         return self.outcome == CLOSED_IN and self.level == np.inf
 
     def sigma_first(self, depth: float = DEPTH_CUT) -> float:
-        """First level at which a basin deeper than ``depth`` [diameter], or the escape, is met."""
+        """First level at which a basin deeper than ``depth`` [diameter], or the escape, is met.
+
+        Basins met at the escape level itself belong to the escape, as in ``merge_tree``.
+        """
         cut = depth * self.terrain.pieces.diameter
-        deep = np.flatnonzero(self.records[:, 0] - self.records[:, 1] > cut)
+        before = self.records[:, 0] < below_escape(self)
+        deep = np.flatnonzero(before & (self.records[:, 0] - self.records[:, 1] > cut))
         return float(self.records[deep[0], 0]) if len(deep) else self.level
 
     def edge_configuration(self, edge: int) -> Configuration:

@@ -6,18 +6,21 @@ being a local minimum is decided by the few cells round the contacts, with no de
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import product
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.cells.kernels.tree import births
-from icage.cells.solver import Configuration, Terrain
+from icage.cells.largest_sigma import largest_sigma_in
+from icage.cells.solver import Configuration, Search, Terrain, search
+from icage.errors import GeometryError
 from icage.geometry.exterior import Pieces
 from icage.hand import HandShape
 from icage.tolerance import (
     DEPTH_CUT,
+    NOT_A_CAGE,
     PLATEAU,
     SAME_POINT,
     SLIDE_GIVE,
@@ -25,8 +28,8 @@ from icage.tolerance import (
     TARGET_TURN,
 )
 
-_MAX_CELLS = 20_000
-"""Cells round a target that are looked at; a vertex of a fine fan has some tens of pieces."""
+_MAX_CELLS = 2_000_000
+"""Cells round a target that fit into 200 MB; a vertex of a fine fan has some tens of pieces."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,16 +73,23 @@ def _slot_end(pieces: Pieces) -> IntArray:
 
 
 def cells_near(terrain: Terrain, at: Configuration, reach: float) -> IntArray:
-    """All cells (k, 3) whose pieces come within ``reach`` of the fingers."""
+    """All cells (k, 3) whose pieces come within ``reach`` of the fingers.
+
+    Raises
+    ------
+    GeometryError:
+        They are more than ``_MAX_CELLS``: to leave some out could miss the way to close further.
+    """
     near: list[IntArray] = []
     for finger in terrain.fingers(at):
         found = pieces_near(terrain.pieces, complex(finger), reach)
         if not len(found):  # a configuration solved in doubles may sit this little inside a wall
             found = pieces_near(terrain.pieces, complex(finger), 100.0 * reach)
         near.append(found)
-    if np.prod([len(n) for n in near], dtype=float) > _MAX_CELLS:
-        near = [n[:27] for n in near]
-    return np.array(list(product(*near)), dtype=np.int64).reshape(-1, 3)
+    total = math.prod(len(n) for n in near)
+    if total > _MAX_CELLS:
+        raise GeometryError(f"{total} cells meet round the contacts; at most {_MAX_CELLS} fit")
+    return np.stack(np.meshgrid(*near, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int64)
 
 
 def shift_between(hand: HandShape, a: Configuration, b: Configuration) -> float:
@@ -104,11 +114,14 @@ def find_target(
     ``reach`` [diameter] bounds how far a finger may be from where it was asked to be.
     """
     size = terrain.pieces.diameter
+    cut = DEPTH_CUT * size
     cells = cells_near(terrain, wanted, reach * size)
     if not len(cells):
         return None
     value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
     best: Target | None = None
+    near: list[Target] = []
+    shut = False
     for k in np.argsort(value[:, 0], kind="stable"):
         if not 0.0 < value[k, 0] < np.inf:
             continue
@@ -121,13 +134,37 @@ def find_target(
         turned = turn_between(wanted, here)
         if moved > reach or turned > turn:
             continue
+        near.append(Target(here, cells[k], float(value[k, 0]), moved, turned, None))
         # hundreds of cells may meet in one point, as at the centre of an arc: it is looked at once
         if best is not None and moved >= best.moved - SAME_POINT:
             continue
         if is_local_minimum(terrain, here, float(value[k, 0])):
             ends = plateau_through(terrain, here, float(value[k, 0]))
+            around = search(terrain, cells[k], float(value[k, 0]), stop_above=value[k, 0] + cut)
+            if ends is None and not _has_depth(around, float(value[k, 0])):
+                continue
+            shut = _isolated(around, float(value[k, 0]))
             best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
-    return best
+    return (_not_isolated(terrain, near) or best) if shut else best
+
+
+def _isolated(around: Search, sigma: float) -> bool:
+    """Whether a hand of this least sigma can do nothing; ``around`` is the search up to the cut."""
+    return around.never_escapes and largest_sigma_in(around) / sigma - 1.0 < NOT_A_CAGE
+
+
+def _not_isolated(terrain: Terrain, near: list[Target]) -> Target | None:
+    """The nearest minimum that can open, of the least points of cells.
+
+    Where more fingers are held than are needed, rounding of the hand's shape may leave a point of
+    free space behind, shut off from the minimum that it was and lower by a little.
+    """
+    for target in sorted(near, key=lambda t: (t.moved, t.sigma_0)):
+        top = target.sigma_0 + DEPTH_CUT * terrain.pieces.diameter
+        around = search(terrain, target.cell, target.sigma_0, stop_above=top)
+        if not _isolated(around, target.sigma_0) and _has_depth(around, target.sigma_0):
+            return replace(target, plateau=plateau_through(terrain, target.at, target.sigma_0))
+    return None
 
 
 def _slid_to(
@@ -158,6 +195,18 @@ def is_local_minimum(terrain: Terrain, here: Configuration, sigma: float) -> boo
     cells = cells_near(terrain, here, SAME_POINT * size)
     value, _ = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
     return bool(value[:, 0].min() >= sigma - DEPTH_CUT * size)
+
+
+def _has_depth(around: Search, sigma: float) -> bool:
+    """Whether a hand of this least sigma must open by more than the depth cut to close further.
+
+    ``around`` is the search up to the cut. A minimum that is less deep does not count. [contract]
+    """
+    if around.escaped:
+        return False
+    terrain = around.terrain
+    value, _ = births(terrain.pieces, terrain.z, around.nodes, terrain.cap, terrain.worst)
+    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * terrain.pieces.diameter)
 
 
 def plateau_through(

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CageWork:
-    """Search and merge tree of one cage: internal to the planner."""
+    """Search and merge tree of one cage: internal to the planner.
+
+    It lies in the frame near the object (``icage.geometry.near_frame``), not in the object's own.
+    """
 
     search: Search
     tree: Tree

@@ -13,10 +13,10 @@ from icage.contact_space.exploration import Exploration, Plane, explore_from
 from icage.contact_space.kernels.explore import TUNNEL
 from icage.contact_space.target import ContactTarget, find_contact_target
 from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
+from icage.geometry.way_out import corners_before_pinch
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
-from icage.way_out import corners_before_pinch
 
 __all__ = ["CONTACT_SPACE", "ContactLook", "ContactSpace"]
 

@@ -14,6 +14,7 @@ from icage.arrays import BoolArray, FloatArray
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.third_finger import Parallelogram
 from icage.geometry.convex import merge_convex, triangulate
+from icage.geometry.geos import union
 from icage.hand import HandShape
 
 NODED = 1e-11
@@ -74,7 +75,7 @@ def _union(parts: list[FloatArray], grid: float) -> shapely.MultiPolygon:
     """Union of convex polygons; points and segments have no inside and are left out."""
     polygons = [shapely.Polygon(part) for part in parts if len(part) >= 3]
     solid = [polygon for polygon in polygons if polygon.area > 0.0]
-    united = shapely.union_all(solid, grid_size=grid)
+    united = union(solid, grid, "contact space obstacle")
     kept = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
     return shapely.MultiPolygon(
         [

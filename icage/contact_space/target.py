@@ -9,10 +9,12 @@ import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.contact_space.exploration import Plane, explore_from
+from icage.errors import GeometryError
 from icage.tolerance import DEPTH_CUT, PLATEAU
 
-_MOST = 4000
-"""Regions round a target that are looked at: many pieces may meet in a vertex of a fine fan."""
+_MOST = 100_000
+"""Regions round a target that can be looked at in half a minute: many pieces may meet in a vertex
+of a fine fan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,13 @@ class ContactTarget:
 
 
 def regions_near(plane: Plane, contacts: FloatArray, reach: float) -> IntArray:
-    """Regions (k, 4) whose edges and piece come within ``reach`` [unit] of the contacts (3, 2)."""
+    """Regions (k, 4) whose edges and piece come within ``reach`` [unit] of the contacts (3, 2).
+
+    Raises
+    ------
+    GeometryError:
+        They are more than ``_MOST``: to leave some out could miss the target.
+    """
     space = plane.space
     edges: list[IntArray] = []
     pieces: list[IntArray] = []
@@ -46,7 +54,9 @@ def regions_near(plane: Plane, contacts: FloatArray, reach: float) -> IntArray:
         for i in range(3)
         for row in product(edges[i], edges[(i + 1) % 3], pieces[(i + 2) % 3])
     ]
-    return np.array(rows[:_MOST], dtype=np.int64).reshape(-1, 4)
+    if len(rows) > _MOST:
+        raise GeometryError(f"{len(rows)} regions meet round the contacts; at most {_MOST} fit")
+    return np.array(rows, dtype=np.int64).reshape(-1, 4)
 
 
 def find_contact_target(
@@ -90,7 +100,5 @@ def _nearest(plane: Plane, ends: FloatArray, wanted: ComplexArray) -> tuple[Floa
 def _is_minimum(plane: Plane, target: ContactTarget) -> bool:
     """Whether nothing deeper can be reached without opening by more than the depth cut."""
     cut = DEPTH_CUT * plane.outline.diameter
-    found = explore_from(
-        plane, target.region, both_ways=False, stop_above=target.sigma_0 + 0.5 * cut
-    )
+    found = explore_from(plane, target.region, both_ways=False, stop_above=target.sigma_0 + cut)
     return not found.escaped and float(found.nodes[:, 0].min()) >= target.sigma_0 - cut

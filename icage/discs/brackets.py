@@ -20,6 +20,7 @@ from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
 from icage.discs.offsets import Offsets, check_disc_contacts, directions_on_arcs, offsets
 from icage.discs.true_curve import refine
 from icage.errors import GeometryError
+from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
 from icage.method import Look, Method
 from icage.outline import Outline
@@ -31,7 +32,6 @@ from icage.tolerance import (
     TARGET_SHIFT,
     TARGET_TURN,
 )
-from icage.way_out import least_gap_on
 
 RESOLUTIONS = (16, 24, 32)
 """Segments per quadrant at which sigma_first is always looked at."""

@@ -19,6 +19,8 @@ import shapely
 from icage.arrays import FloatArray
 from icage.errors import GeometryError, GraspError
 from icage.geometry.exterior import without_straight_vertices
+from icage.geometry.geos import union
+from icage.geometry.near_frame import NearFrame
 from icage.outline import Outline
 from icage.tolerance import COLLISION, CONTACT_OFF
 
@@ -29,6 +31,10 @@ _RESTING = 1e-3
 """[rad] Half the chord on which a contact of an arc rests. Were the contact a corner of the chords,
 its normal would be off by half a step on either side, and a grasp could slide away that the arc
 holds. The chord lies only 5e-7 radii inside."""
+
+_WHOLE = 1e-6
+"""[segment] An arc this little longer than a whole number of segments gets no further one: a right
+angle that the rounding of a distant drawing has opened is split as the right angle is."""
 
 _GRID = 1e-15
 """[diameter] Noding grid of the union."""
@@ -115,6 +121,13 @@ def offsets(
     GeometryError:
         The union came out wrong: our fault, and never a polygon with a crack in it.
     """
+    frame = NearFrame.of(outline)
+    if frame.moved:
+        near = offsets(frame.outline_into(outline), radius, segments, through)
+        return near._replace(
+            inner=Outline.computed(frame.back(near.inner.vertices)),
+            outer=Outline.computed(frame.back(near.outer.vertices)),
+        )
     wanted = through or {}
     strips = _strips(outline, radius)
     inner = [outline.polygon]
@@ -170,7 +183,7 @@ def _stops(turn: float, segments: int, wanted: list[float]) -> FloatArray:
     stops = sorted({0.0, turn, *(t for t in wanted if 0.0 < t < turn)})
     angles: list[float] = [0.0]
     for low, high in pairwise(stops):
-        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - 1e-9))
+        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - _WHOLE))
         angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
     return np.array(angles)
 
@@ -190,9 +203,10 @@ def _exterior(
 ) -> tuple[Outline, int]:
     """Outer ring of the union and the number of holes; no vertex nearer than the chords allow."""
     grid = _GRID * (outline.diameter + radius)
-    grown = shapely.union_all(parts, grid_size=grid)
+    grown = union(parts, grid, f"growing the outline by {radius}")
     if not isinstance(grown, shapely.Polygon):
-        raise GeometryError(f"growing the outline by {radius} gives a {grown.geom_type}")
+        found = type(grown).__name__
+        raise GeometryError(f"growing the outline by {radius} gives a {found}")
     ring = shapely.get_coordinates(grown.exterior)[:-1]
     gap = np.atleast_1d(shapely.distance(shapely.points(ring), outline.polygon))
     if float(gap.min()) < radius - sagitta - COLLISION * outline.diameter:
@@ -200,7 +214,7 @@ def _exterior(
             f"growing the outline by {radius} left a crack: a vertex only {gap.min()} away"
         )
     holes = [h for h in grown.interiors if shapely.Polygon(h).area > grid * outline.diameter]
-    return Outline(ring), len(holes)
+    return Outline.computed(ring), len(holes)
 
 
 def directions_on_arcs(

@@ -12,11 +12,24 @@ import numpy as np
 from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
+from icage.errors import GraspError, HandError
 from icage.hand import HandShape
+from icage.kernels.locate import depth_inside
 from icage.outline import Outline
+from icage.tolerance import COLLISION, CONTACT_OFF
 
 _NEAR = 3e-3
 """[diameter] Features of the outline this close to being touched take part."""
+
+_TOUCHED = 1e-7
+"""[diameter] A contact of an inner polygon is this little outside the features it stands for."""
+
+_TRIES = 4
+"""Times that a hand whose finger has come free is put onto the curve again."""
+
+_COLLAPSED = 0.5
+"""[1] Sigma over that of the contacts given, below which the hand has fallen off its features: the
+true curve is nowhere further from a polygon than a small part of the radius."""
 
 
 class Feature(NamedTuple):
@@ -55,6 +68,9 @@ def refine(
     """Contacts (3, 2) of the local minimum on the true curve next to the given ones, or None.
 
     Sequential quadratic programming, then Newton steps on the conditions of the active features.
+    The features are taken as whole lines and circles: a hand that has slid off the end of one and
+    closed behind it, or stands in the object there, is no minimum. None then, as where there is
+    none. A finger may be free in the minimum found.
     """
     size = outline.diameter
     features = features_near(outline, radius, contacts)
@@ -72,8 +88,101 @@ def refine(
     point = system.polished(np.asarray(answer.x))
     if point is None or float(system.gaps(point).min()) < -1e-9:
         return None
+    if np.hypot(*point[2:]) < _COLLAPSED * np.hypot(*start[2:]):
+        return None
     f = (point[0] + 1j * point[1]) + (point[2] + 1j * point[3]) * hand.z
-    return np.column_stack([f.real, f.imag]) * size + origin
+    solved = np.column_stack([f.real, f.imag]) * size + origin
+    if float(_depths(outline, radius, solved).max()) > COLLISION * size:
+        return None
+    return solved
+
+
+def _depths(outline: Outline, radius: float, contacts: FloatArray) -> FloatArray:
+    """How far each finger (3,) is inside the true curve, [unit]; negative outside."""
+    middle = contacts.mean(axis=0)
+    return depth_inside(outline.vertices - middle, contacts - middle, radius)
+
+
+def onto_curve(outline: Outline, radius: float, contacts: FloatArray) -> FloatArray | None:
+    """Contacts (3, 2) of an inner polygon moved onto the true curve, each the nearest way, or None.
+
+    A contact on a chord goes to its arc, one in a corner of the polygon to the corner of the curve,
+    one just off the curve back to it (Newton steps). The shape of the hand changes with them.
+    """
+    size = outline.diameter
+    moved = contacts.copy()
+    for k in range(len(contacts)):
+        near = [f for f in features_near(outline, radius, contacts) if f.finger == k]
+        if not near:
+            return None
+        least = min(_gap(f, moved[k], radius)[0] for f in near)
+        bound = max(0.0, least) + _TOUCHED * size  # a free finger goes to what is nearest to it
+        touched = [f for f in near if _gap(f, moved[k], radius)[0] <= bound]
+        for _ in range(8):
+            rows = [_gap(f, moved[k], radius) for f in touched]
+            gaps, normals = np.array([g for g, _ in rows]), np.array([n for _, n in rows])
+            moved[k] -= np.linalg.lstsq(normals, gaps, rcond=1e-9)[0]
+    if float(np.abs(_depths(outline, radius, moved)).max()) > COLLISION * size:
+        return None
+    return moved
+
+
+def _gap(feature: Feature, point: FloatArray, radius: float) -> tuple[float, FloatArray]:
+    """Distance of a finger from touching a feature, and the direction in which it grows."""
+    off = point - feature.point
+    far = float(np.hypot(*off))
+    normal = off / far if feature.normal is None else feature.normal
+    return float(normal @ off) - radius, normal
+
+
+def grasp_on_curve(
+    outline: Outline, radius: float, contacts: FloatArray, hand: HandShape | None = None
+) -> FloatArray:
+    """The grasp of disc fingers on the true curve next to contacts (3, 2) of an inner polygon.
+
+    The minimum of the same hand, if all fingers touch there. On the true curve the hand may be too
+    small for that by the height of a chord: a finger is left free, or nothing is held. The best
+    grasps stand where a finger is just about to be free, so this is no rare case. Then the contacts
+    are moved onto the curve, and the hand with them, unless ``hand`` is what is asked for.
+
+    Raises
+    ------
+    GraspError:
+        There is no such grasp; says why.
+    """
+    why = ""
+    solved = refine(outline, hand or HandShape.from_contacts(contacts), radius, contacts)
+    if solved is None:
+        why = "no minimum on the true curve"
+    elif _all_touch(outline, radius, solved):
+        return solved
+    else:
+        why = "a finger leaves the outline on the true curve"
+    points = contacts
+    for _ in range(_TRIES if hand is None else 0):
+        moved = onto_curve(outline, radius, points)
+        if moved is None:
+            break
+        solved = _own_minimum(outline, radius, moved)
+        if solved is None:
+            break
+        if _all_touch(outline, radius, solved):
+            return solved
+        points = solved
+    raise GraspError(why)
+
+
+def _own_minimum(outline: Outline, radius: float, contacts: FloatArray) -> FloatArray | None:
+    """The minimum of the hand that stands on these contacts; None also if that is no hand."""
+    try:
+        return refine(outline, HandShape.from_contacts(contacts), radius, contacts)
+    except HandError:
+        return None
+
+
+def _all_touch(outline: Outline, radius: float, contacts: FloatArray) -> bool:
+    depth = _depths(outline, radius, contacts)
+    return bool(np.abs(depth).max() <= CONTACT_OFF * outline.diameter)
 
 
 def _half_square(v: FloatArray) -> float:

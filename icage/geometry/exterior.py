@@ -13,6 +13,7 @@ import numpy as np
 import shapely
 
 from icage.arrays import FloatArray, IntArray
+from icage.errors import GeometryError
 from icage.geometry.convex import merge_convex, triangulate
 from icage.hand import HandShape
 from icage.kernels.straight import corners
@@ -93,6 +94,8 @@ def exterior_pieces(
     """
     origin = outline.vertices[0].copy()
     ring = without_straight_vertices(outline.vertices - origin, outline.diameter)
+    if len(ring) < 3:
+        raise GeometryError("the outline is nothing but straight vertices")
     longest = max(1.0, abs(hand.z_3), abs(hand.z_3 - 1.0))
     margin = 1.01 * outline.diameter * longest / shortest_side(hand)
     low, high = ring.min(axis=0) - margin, ring.max(axis=0) + margin

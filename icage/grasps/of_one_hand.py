@@ -6,6 +6,8 @@ the depth cut): from the least points of all cells, kept if no cell round them g
 
 from __future__ import annotations
 
+from itertools import takewhile
+
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
@@ -14,6 +16,7 @@ from icage.cells.kernels.tree import lowest_cells
 from icage.cells.solver import Configuration, Terrain
 from icage.cells.target import is_local_minimum, plateau_through
 from icage.errors import InputError
+from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, SAME_POINT
@@ -36,7 +39,8 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
     >>> len(grasps_of_hand(triangle, HandShape.from_angles_deg(60, 120)))
     3
     """
-    terrain = Terrain.around(outline, hand)
+    frame = NearFrame.of(outline)
+    terrain = Terrain.around(frame.outline_into(outline), hand)
     pieces = terrain.pieces
     if pieces.total > MOST_PIECES:
         raise InputError(
@@ -51,14 +55,11 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
     for k in np.argsort(low[:, 0], kind="stable"):
         here = _least_point(terrain, cells[k], low[k], where[k])
         sigma = float(low[k, 0])
-        if any(
-            abs(sigma - s) <= SAME_POINT * size and _same(terrain, here, known)
-            for s, known in found[-64:]
-        ):
+        if _known(terrain, here, sigma, found):
             continue
         if is_local_minimum(terrain, here, sigma) and not plateau_through(terrain, here, sigma):
             found.append((sigma, here))
-    return [terrain.contacts(here) for _, here in found]
+    return [frame.back(terrain.contacts(here)) for _, here in found]
 
 
 def _least_point(
@@ -66,6 +67,15 @@ def _least_point(
 ) -> Configuration:
     a, b = terrain.on_edge(cell, int(where[0]), int(where[1]), low[1], low[2])
     return Configuration(0.5 * (a.d + b.d), a.w)
+
+
+def _known(
+    terrain: Terrain, here: Configuration, sigma: float, found: list[tuple[float, Configuration]]
+) -> bool:
+    """Whether a configuration is among those found, which come in ascending order of sigma."""
+    least = sigma - SAME_POINT * terrain.pieces.diameter
+    last = takewhile(lambda pair: pair[0] >= least, reversed(found))
+    return any(_same(terrain, here, known) for _, known in last)
 
 
 def _same(terrain: Terrain, a: Configuration, b: Configuration) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from typing import Literal, TypeAlias
 
@@ -24,6 +24,7 @@ from icage.cells.target import contacts_as_configuration, find_target
 from icage.discs.offsets import offsets
 from icage.errors import GraspError, HandError, InputError
 from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
+from icage.geometry.near_frame import NearFrame
 from icage.grasps.features import EDGE, VERTEX, Features, balanced_triples, features_of
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -40,12 +41,19 @@ _FLATTEST = 0.05
 """Least height over longest side of the hands that are searched: the same."""
 
 _SEARCH_LIMIT = 20_000
+"""Cells after which the search from a candidate is broken off; how many were is told."""
+
 _CHUNK = 64
 _MOST_TRIPLES = 20_000
+"""Triples that are tried, a random choice if there are more; how many are left out is told."""
+
 _MORE_POINTS = 8
 _PROMISING = 300
 _IMPROVED = 32
 _STEPS = 90
+
+_SAME_PLACE = 0.02
+"""[diameter] Grasps whose contacts are all nearer to each other than this are one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +97,20 @@ class Candidate:
     score: float
 
 
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """Everything that was found, best first, and what was not looked at.
+
+    ``candidates`` may be near each other. ``broken_off`` counts grasps whose search was larger than
+    allowed, ``triples_left_out`` those of all ``triples`` of contact features that were not drawn.
+    """
+
+    candidates: tuple[Candidate, ...]
+    triples: int
+    triples_left_out: int
+    broken_off: int
+
+
 _Job: TypeAlias = tuple[IntArray, FloatArray]
 _Found: TypeAlias = tuple[Candidate | None, FloatArray]
 
@@ -99,6 +121,8 @@ class Bench:
     def __init__(self, outline: Outline, radius: float, wanted: Wanted) -> None:
         self.radius = radius
         self.wanted = wanted
+        self.broken_off = 0
+        self.triples = self.triples_left_out = 0
         self.outline = offsets(outline, radius, _SEGMENTS).inner if radius > 0.0 else outline
         chord = 2.1 * radius * np.sin(0.25 * np.pi / _SEGMENTS)
         self.features: Features = features_of(self.outline, longer_than=float(chord))
@@ -129,6 +153,7 @@ class Bench:
             return None
         found = search(terrain, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
         if found.gave_up:
+            self.broken_off += 1
             return None
         top = largest_sigma_in(found) if found.never_escapes else found.level
         first = min(found.sigma_first(), top)
@@ -152,7 +177,9 @@ class Bench:
         triples, points = balanced_triples(self.features, self.outline, self.apart)
         corners = (self.features.kind[triples] == VERTEX).sum(axis=1)
         use = np.flatnonzero(corners >= self.wanted.corners)
-        if len(use) > _MOST_TRIPLES:
+        self.triples = len(use)
+        self.triples_left_out = max(0, len(use) - _MOST_TRIPLES)
+        if self.triples_left_out:
             use = np.sort(rng.choice(use, _MOST_TRIPLES, replace=False))
         jobs: list[_Job] = list(zip(triples[use], points[use], strict=True))
         if self.wanted.near is None:
@@ -199,14 +226,22 @@ def _start_worker(outline: FloatArray, radius: float, wanted: Wanted) -> None:
     _bench = Bench(Outline(outline), radius, wanted)
 
 
-def _try_chunk(jobs: list[_Job]) -> list[_Found]:
-    assert _bench is not None
-    return [(_bench.at(triple, p), p) for triple, p in jobs]
+_Done: TypeAlias = tuple[list[_Found], int]
+"""What came of a chunk of jobs, and how many searches were broken off in it."""
 
 
-def _improve_chunk(jobs: list[_Job]) -> list[_Found]:
+def _try_chunk(jobs: list[_Job]) -> _Done:
     assert _bench is not None
-    return [improved(_bench, triple, p) for triple, p in jobs]
+    before = _bench.broken_off
+    found = [(_bench.at(triple, p), p) for triple, p in jobs]
+    return found, _bench.broken_off - before
+
+
+def _improve_chunk(jobs: list[_Job]) -> _Done:
+    assert _bench is not None
+    before = _bench.broken_off
+    found = [improved(_bench, triple, p) for triple, p in jobs]
+    return found, _bench.broken_off - before
 
 
 def improved(bench: Bench, triple: IntArray, start: FloatArray) -> _Found:
@@ -239,25 +274,22 @@ def _silent(_stage: str, _done: int, _total: int) -> None:
     """No progress report."""
 
 
-def best_grasps(
+def ranked_grasps(
     outline: Outline,
     *,
     finger_radius: float = 0.0,
-    top: int = 10,
     wanted: Wanted = Wanted(),
     rng: np.random.Generator,
     workers: int = 1,
     progress: Progress = _silent,
-) -> list[Candidate]:
-    """The best grasps that were found, best first, no two with nearly the same contacts.
+) -> Ranking:
+    """All grasps that were found, best first.
 
     Parameters
     ----------
     finger_radius:
         Radius of disc fingers, [unit]; the search then runs on the inner offset polygon, so the
         levels are those of that polygon: plan the winners for certified ones.
-    top:
-        How many to return.
     wanted:
         What is ranked and which grasps are looked at. aim "first" ranks by sigma_first / sigma_0,
         "cage" by sigma_max / sigma_0 (the largest sigma of the component for a hand that never
@@ -270,8 +302,8 @@ def best_grasps(
     GraspError:
         No immobilizing grasp was found.
     """
-    if top < 1:
-        raise InputError(f"top = {top}; at least 1 is needed")
+    frame = NearFrame.of(outline)
+    outline = frame.outline_into(outline)
     bench = Bench(outline, finger_radius, wanted)
     with _Workers(outline, finger_radius, wanted, workers, bench) as pool:
         found = pool.run(_try_chunk, bench.jobs(rng), "every triple", progress)
@@ -286,10 +318,39 @@ def best_grasps(
             (np.array(c.triple), p) for c, p in _one_per_triple(ranked)[:_IMPROVED]
         ]
         better = pool.run(_improve_chunk, seeds, "improving", progress)
-    answer = _distinct([c for c, _ in _ranked(better + [(c, p) for c, p in ranked])], bench, top)
-    if not answer:
+    best = [c for c, _ in _ranked(better + [(c, p) for c, p in ranked])]
+    if not best:
         raise GraspError("no immobilizing three-finger grasp was found on this outline")
-    return answer
+    return Ranking(
+        tuple(replace(c, contacts=frame.back(c.contacts)) for c in best),
+        bench.triples, bench.triples_left_out, pool.broken_off,
+    )  # fmt: skip
+
+
+def best_grasps(
+    outline: Outline,
+    *,
+    finger_radius: float = 0.0,
+    top: int = 10,
+    wanted: Wanted = Wanted(),
+    rng: np.random.Generator,
+    workers: int = 1,
+    progress: Progress = _silent,
+) -> list[Candidate]:
+    """The ``top`` best of ``ranked_grasps``, no two with nearly the same contacts."""
+    if top < 1:
+        raise InputError(f"top = {top}; at least 1 is needed")
+    ranking = ranked_grasps(
+        outline, finger_radius=finger_radius, wanted=wanted, rng=rng, workers=workers,
+        progress=progress,
+    )  # fmt: skip
+    kept: list[Candidate] = []
+    for candidate in ranking.candidates:
+        if not any(same_place(outline, candidate.contacts, other.contacts) for other in kept):
+            kept.append(candidate)
+            if len(kept) == top:
+                break
+    return kept
 
 
 def _around(p: FloatArray, bench: Bench, rng: np.random.Generator) -> FloatArray:
@@ -316,20 +377,11 @@ def _one_per_triple(
     return kept
 
 
-def _distinct(ranked: list[Candidate], bench: Bench, top: int) -> list[Candidate]:
-    """Drop grasps whose contacts all lie near those of a better one (in any labelling)."""
-    near = 0.02 * bench.outline.diameter
-    kept: list[Candidate] = []
-    for candidate in ranked:
-        copies = [np.roll(candidate.contacts, k, axis=0) for k in range(3)]
-        if any(
-            float(np.hypot(*(c - other.contacts).T).max()) < near for other in kept for c in copies
-        ):
-            continue
-        kept.append(candidate)
-        if len(kept) == top:
-            break
-    return kept
+def same_place(outline: Outline, a: FloatArray, b: FloatArray) -> bool:
+    """Whether the contacts of two grasps all lie near each other (in any labelling)."""
+    near = _SAME_PLACE * outline.diameter
+    copies = (np.roll(a, k, axis=0) for k in range(len(a)))
+    return any(float(np.hypot(*(c - b).T).max()) < near for c in copies)
 
 
 class _Workers:
@@ -340,6 +392,7 @@ class _Workers:
     ) -> None:
         global _bench
         _bench = bench
+        self.broken_off = 0
         self._pool: ProcessPoolExecutor | None = None
         if workers > 1:
             self._pool = ProcessPoolExecutor(
@@ -356,7 +409,7 @@ class _Workers:
 
     def run(
         self,
-        work: Callable[[list[_Job]], list[_Found]],
+        work: Callable[[list[_Job]], _Done],
         jobs: list[_Job],
         stage: str,
         progress: Progress,
@@ -365,7 +418,8 @@ class _Workers:
         chunks = [jobs[k : k + size] for k in range(0, len(jobs), size)]
         results = self._pool.map(work, chunks) if self._pool else map(work, chunks)
         found: list[_Found] = []
-        for done in results:
+        for done, broken_off in results:
             found += done
+            self.broken_off += broken_off
             progress(stage, len(found), len(jobs))
         return found

@@ -19,15 +19,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from icage.arrays import FloatArray
-from icage.errors import IcageError
+from icage.errors import IcageError, InputError
 from sim.camera.stage import Decor, View, dressed
-from sim.world.engine import mj
+from sim.world.engine import GRAPHICS, mj
 from sim.world.scene import Scene
 
 BACKENDS: Final = ("egl", "osmesa")
 
 INSTALL_HINT: Final = "apt-get install libegl1 libgl1 libgl1-mesa-dri"
 """One line for a Debian or Ubuntu machine without a display."""
+
+_KNOWN: Final = (
+    "", "egl", "osmesa", "glfw", "glx", "cgl", "wgl", "enable", "enabled", "on", "true", "1",
+    "disable", "disabled", "off", "false", "0",
+)  # fmt: skip
+"""Values of ``MUJOCO_GL`` that mean something to the engine, on whatever system."""
 
 _PROBE_SECONDS: Final = 60.0
 _WORKER: Final = Path(__file__).with_name("camera_process.py")
@@ -37,6 +43,22 @@ _PROBE_MODEL: Final = """<mujoco><worldbody><camera name="top" pos="0 0 1"/>
 
 class RenderingUnavailable(IcageError):
     """No offscreen drawing on this machine, or the renderer failed half way."""
+
+
+def check_graphics() -> None:
+    """Refuse to draw under a setting that means nothing: whoever made it wants something else.
+
+    Raises
+    ------
+    InputError:
+        ``MUJOCO_GL`` is set to what the engine does not know.
+    """
+    setting = os.environ.get(GRAPHICS, "")
+    if setting.lower().strip() not in _KNOWN:
+        raise InputError(
+            f"{GRAPHICS}={setting} in the environment is no graphics that MuJoCo knows; "
+            f"unset it or take one of {', '.join(BACKENDS)}; without a video it does not matter"
+        )
 
 
 @functools.cache
@@ -93,7 +115,7 @@ def _draw(
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             cwd=folder,
-            env={**os.environ, "MUJOCO_GL": backend},
+            env={**os.environ, GRAPHICS: backend},
         )
         try:
             assert worker.stdout is not None

@@ -6,12 +6,35 @@ members as unknown, and our own annotations check what comes back.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
-import mujoco
-import mujoco.batch
+GRAPHICS: Final = "MUJOCO_GL"
+"""The variable that chooses the engine's graphics."""
+
+
+@contextmanager
+def _no_graphics() -> Generator[None]:
+    """MUJOCO_GL switched off for as long as the engine is imported, then as it was.
+
+    The import fails on a value that it does not know. No picture is drawn in this process (frames
+    come from one of their own, see ``sim.camera``), so what is set there does not matter here.
+    """
+    before = os.environ.get(GRAPHICS)
+    os.environ[GRAPHICS] = "disable"
+    try:
+        yield
+    finally:
+        del os.environ[GRAPHICS]
+        if before is not None:
+            os.environ[GRAPHICS] = before
+
+
+with _no_graphics():
+    import mujoco
+    import mujoco.batch
 
 mj: Any = mujoco
 Batch: Any = mujoco.batch.Batch

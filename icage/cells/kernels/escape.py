@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.cells.kernels.search import SIGHT, explore
+from icage.cells.kernels.search import GAVE_UP, SIGHT, explore
 from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import hash_slot
@@ -46,7 +46,8 @@ def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory_keys, memor
     """Escape level (n,) of each cell (n, 3), or any level at or below ``sigma`` if it escapes so.
 
     Cells that a search enters before its last new maximum escape exactly at the final level,
-    those after it no later. Returns (levels, memory keys, memory levels).
+    those after it no later. nan where the search gave up. Returns (levels, memory keys, memory
+    levels).
     """
     m = len(pieces.ptr) - 1
     keys = memory_keys
@@ -67,6 +68,9 @@ def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory_keys, memor
                 continue
         found = explore(pieces, z, cells[k], 0.0, cap, worst, np.inf, limit)
         level = found[1]
+        if found[0] == GAVE_UP:
+            levels[k] = np.nan
+            continue
         nodes = found[3]
         node_level = found[4]
         levels[k] = level

@@ -35,6 +35,9 @@ TIE = 1e-12
 """[diameter] Passes this close to the running maximum are looked at as if they were it: pass
 values are good to about this, and a pass through a vertex has several facets of one value."""
 
+DEEP = 1e-5
+"""[diameter] A basin known to be this deep is followed no further: above every depth cut in use."""
+
 
 @compiled
 def birth(pieces, z, a, b, c, cap, worst, base, rows, tally):
@@ -249,6 +252,15 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             records[n_records, 1] = min(behind, level)
             records[n_records, 2] = n_nodes
             n_records += 1
+        elif n_records > 0:
+            # further into the basin behind the last record: its depth is not that of the cell it
+            # was entered by, which may be a sliver
+            last = n_records - 1
+            if records[last, 0] - records[last, 1] < DEEP * pieces.scale:
+                behind, _, _, _, _ = birth(
+                    pieces, z, cell[0], cell[1], cell[2], level, worst, base, rows, tally
+                )
+                records[last, 1] = min(behind, records[last, 1])
     # passes left open may still lead between two visited cells
     for e in range(n_edges):
         if edges[e, 1] == -1:

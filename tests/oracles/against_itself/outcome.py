@@ -22,13 +22,19 @@ class Outcome:
     disagreements: list[str] = field(default_factory=list)
     exceptions: list[str] = field(default_factory=list)
 
-    def add(self, what: str, difference: float) -> None:
+    worst_of: dict[str, float] = field(default_factory=dict)
+    """The worst difference within each tolerance, where there are several."""
+
+    def add(self, what: str, difference: float, tolerance: float = TOLERANCE) -> None:
         """Note how much one more way to the same levels differs."""
         self.runs += 1
-        if difference > TOLERANCE:
+        if difference > tolerance:
             self.disagreements.append(f"{what}: {difference:.3g}")
-        else:
-            self.worst = max(self.worst, difference)
+            return
+        self.worst = max(self.worst, difference)
+        if tolerance != TOLERANCE:
+            key = f"{tolerance:g}"
+            self.worst_of[key] = max(self.worst_of.get(key, 0.0), difference)
 
 
 Judge = Callable[[int, int], Outcome]

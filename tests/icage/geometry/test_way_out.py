@@ -10,8 +10,8 @@ import shapely
 
 from icage.cage import Cage
 from icage.contact_space.method import CONTACT_SPACE
+from icage.geometry.way_out import corners_before_pinch, free_from
 from icage.planner import plan
-from icage.way_out import corners_before_pinch, free_from
 from models import CASES
 from tests.icage.cells.wandering import solved
 from tests.oracles.path_check import path_facts

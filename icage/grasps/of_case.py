@@ -1,0 +1,54 @@
+"""The best target grasps of a case: searched, planned one after another, ranked. Our own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from icage.case import Case
+from icage.errors import InputError
+from icage.grasp import Grasp
+from icage.grasps.planned import PlannedGrasps, planned_grasps, score
+from icage.grasps.search import Aim, Progress, Wanted, ranked_grasps
+
+
+def best_of_case(
+    case: Case,
+    top: int,
+    wanted: Wanted,
+    rng: np.random.Generator,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> PlannedGrasps:
+    """Up to ``top`` cages of the best grasps, and what came to nothing or was not looked at.
+
+    Raises
+    ------
+    GraspError:
+        No immobilizing three-finger grasp was found.
+    InputError:
+        ``top`` below 1.
+    """
+    if top < 1:
+        raise InputError(f"top is {top}; at least 1 is needed")
+    radius = case.finger_radius
+    reporting = {} if progress is None else {"progress": progress}
+    found = ranked_grasps(
+        case.outline, finger_radius=radius, wanted=wanted, rng=rng, workers=workers, **reporting
+    )
+    contacts = (candidate.contacts for candidate in found.candidates)
+    planned = planned_grasps(case.outline, radius, contacts, wanted.aim, top)
+    return replace(
+        planned,
+        triples_left_out=found.triples_left_out,
+        searches_broken_off=found.broken_off,
+    )
+
+
+def grasps_in(planned: PlannedGrasps, aim: Aim) -> tuple[Grasp, ...]:
+    """The cages as grasps with their levels and scores."""
+    return tuple(
+        Grasp(cage.contacts, cage.sigma_0, cage.sigma_first, cage.sigma_max, score(cage, aim))
+        for cage in planned.cages
+    )
