@@ -20,7 +20,7 @@ import pytest
 from icage.cage import Cage
 from icage.contact_space.method import ContactSpace
 from icage.discs.offsets import arcs
-from icage.method import Engine
+from icage.method import Method
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Floats
@@ -66,7 +66,7 @@ def test_points_on_a_regular_polygon(n: int) -> None:
 
 @pytest.mark.parametrize("n", POINTS[:4])
 def test_points_by_the_papers_method(n: int) -> None:
-    engine: Engine = ContactSpace()
+    engine: Method = ContactSpace()
     cage = plan(Outline(ngon(n)), middles(n, 0.0), engine=engine)
     assert found(cage) == pytest.approx(levels(n, 0.0), rel=EXACT)
 

@@ -36,7 +36,7 @@ from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.search import Bench, Candidate, Wanted, best_grasps
 from icage.hand import HandShape
-from icage.method import Engine
+from icage.method import Method
 from icage.outline import Outline
 from icage.planner import plan
 from icage.tolerance import MERGE_VERTEX
@@ -489,7 +489,7 @@ WRONG_CONTACTS: dict[str, tuple[Floats, str]] = {
 def test_contacts_that_are_no_hand_are_refused_by_every_method(name: str, method: str) -> None:
     contacts, message = WRONG_CONTACTS[name]
     outline = specimen("triangle").outline
-    engine: Engine = ContactSpace() if method == "contact space" else CELLS
+    engine: Method = ContactSpace() if method == "contact space" else CELLS
     with pytest.raises(InputError, match=message):
         plan(outline, contacts, 0.1 if method == "discs" else 0.0, engine)
 
