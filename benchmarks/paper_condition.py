@@ -41,11 +41,11 @@ def main() -> None:
     for number, path in enumerate(FILES):
         case = read_case(path)
         cage = plan(case.outline, case.contacts, case.finger_radius)
-        if cage.verdict == "not_a_cage":
+        if cage.status == "not_a_cage":
             continue
         rng = np.random.default_rng([chosen.seed, number])
         report = sample_condition(cage, chosen.count, rng)
-        rows.append(row(case.name, cage.verdict, report))
+        rows.append(row(case.name, cage.status, report))
         print(json.dumps(rows[-1]))
         if chosen.figures and report.counterexample is not None:
             verdict = "/".join(report.outside)

@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
+from icage.cells.free_space import search
 from icage.cells.membership import query
 from icage.cells.regions import caging_regions
-from icage.cells.solver import search
 from icage.cells.target import contacts_as_configuration, find_target
-from icage.grasps.search import Bench, Wanted
+from icage.grasps.search import GraspEvaluator, Wanted
 from icage.outline import Outline
 from icage.planner import plan
 
@@ -45,7 +45,7 @@ def timed(work: Callable[..., object], *arguments: object) -> float:
 
 def targets(outline: Outline, count: int, rng: np.random.Generator) -> list[np.ndarray]:
     """Contacts of immobilizing grasps of the outline, half of them with a useful cage."""
-    bench = Bench(outline, 0.0, Wanted())
+    bench = GraspEvaluator(outline, 0.0, Wanted())
     jobs = bench.jobs(rng)
     found: list[np.ndarray] = []
     for k in rng.permutation(len(jobs)):
@@ -77,10 +77,10 @@ def measure() -> dict[str, float]:
             setup.append(time.process_time() - started)
             if cage.work is None:
                 continue
-            terrain = cage.work.search.terrain
-            target = find_target(terrain, contacts_as_configuration(terrain, contacts))
+            free_space = cage.work.search.free_space
+            target = find_target(free_space, contacts_as_configuration(free_space, contacts))
             assert target is not None
-            single.append(timed(search, terrain, target.cell, target.sigma_0))
+            single.append(timed(search, free_space, target.cell, target.sigma_0))
             regions.append(timed(caging_regions, cage))
         low, high = outline.vertices.min(axis=0), outline.vertices.max(axis=0)
         rows = np.column_stack(

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.planner import star, targets, timed
 from experiments.figures.drawing.palette import FINGERS
-from icage.cells.solver import Terrain, search
+from icage.cells.free_space import FreeSpace, search
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.contact_space.exploration import Plane, explore_from
 from icage.contact_space.target import find_contact_target
@@ -49,13 +49,13 @@ def measure(sizes: tuple[int, ...], count: int) -> dict[str, Any]:
         for outline in (star(n, rng) for _ in range(3)):
             for contacts in targets(outline, count, rng):
                 hand = HandShape.from_contacts(contacts)
-                terrain = Terrain.around(outline, hand)
-                at = find_target(terrain, contacts_as_configuration(terrain, contacts))
+                free_space = FreeSpace.around(outline, hand)
+                at = find_target(free_space, contacts_as_configuration(free_space, contacts))
                 plane = Plane.around(outline, hand)
                 begin = find_contact_target(plane, contacts, reach=TARGET_SHIFT, turn=TARGET_TURN)
                 if at is None or begin is None:
                     continue
-                cells.append(timed(search, terrain, at.cell, at.sigma_0))
+                cells.append(timed(search, free_space, at.cell, at.sigma_0))
                 contact.append(timed(explore_from, plane, begin.region))
                 found = explore_from(plane, begin.region)
                 log = found.log()

@@ -18,8 +18,8 @@ def difference(a: float | None, b: float | None) -> float:
 def disagreements(a: Cage, b: Cage, tolerance: float = AGREEMENT) -> list[str]:
     """What two cages of the same target differ in, one line each; empty if they agree."""
     found: list[str] = []
-    if a.verdict != b.verdict:
-        found.append(f"verdict: {a.verdict} against {b.verdict}")
+    if a.status != b.status:
+        found.append(f"verdict: {a.status} against {b.status}")
     for name in ("sigma_0", "sigma_first", "sigma_max", "sigma_max_upper"):
         one, other = getattr(a, name), getattr(b, name)
         off = difference(one, other)

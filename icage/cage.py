@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, overload
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 import shapely
@@ -21,7 +22,15 @@ if TYPE_CHECKING:
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
 
-Verdict: TypeAlias = Literal["cage", "not_a_cage", "never_escapes"]
+
+class CageStatus(StrEnum):
+    """What a plan has found; the contract calls it the verdict. [docs/formats.md, icage plan]"""
+
+    CAGE = "cage"
+    NOT_A_CAGE = "not_a_cage"
+    """The contacts hold nothing; ``why`` says why."""
+    NEVER_ESCAPES = "never_escapes"
+    """However far the hand opens, the object stays in it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +109,7 @@ class Cage(Value):
     hand: HandShape
     finger_radius: float
     contacts: FloatArray
-    verdict: Verdict
+    status: CageStatus
     why: str | None
     sigma_0: float
     sigma_first: float | None
@@ -240,7 +249,7 @@ class Cage(Value):
     def __repr__(self) -> str:
         name = f" {self.name}" if self.name else ""
         unit = f" {self.unit}" if self.unit else ""
-        if self.verdict == "not_a_cage":
+        if self.status == "not_a_cage":
             return f"<Cage{name}: not a cage at sigma {self.sigma_0:.6g}{unit}>"
         first = "" if self.sigma_first is None else f" < {self.sigma_first:.6g}"
         top = "" if self.sigma_max is None else f" <= {self.sigma_max:.6g}"
@@ -270,7 +279,7 @@ def not_a_cage(
         hand,
         radius,
         contacts,
-        "not_a_cage",
+        CageStatus.NOT_A_CAGE,
         why,
         sigma,
         sigma,

@@ -50,7 +50,7 @@ def as_contacts(contacts: ArrayLike) -> FloatArray:
 
 def check_radius(finger_radius: object) -> float:
     """The radius as a float, or a GraspError: a finite number, 0 or more, is needed."""
-    if not isinstance(finger_radius, Real) or isinstance(finger_radius, bool):
+    if isinstance(finger_radius, bool) or not isinstance(finger_radius, Real):
         raise GraspError(f"finger_radius is {finger_radius!r}; a number is needed")
     radius = float(finger_radius)
     if not math.isfinite(radius) or radius < 0.0:

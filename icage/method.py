@@ -13,7 +13,7 @@ from icage.hand import HandShape
 from icage.outline import Outline
 
 
-class Look(Protocol):
+class LocalCage(Protocol):
     """A strict minimum on one polygon, and the levels round it."""
 
     @property
@@ -50,8 +50,8 @@ class Method(Protocol):
         """The cage of the contacts on a polygon that stands for an outline and a radius."""
         ...
 
-    def look(
+    def local_cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> Look | None:
+    ) -> LocalCage | None:
         """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
         ...

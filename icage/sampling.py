@@ -82,7 +82,7 @@ def safe_level(sigma: float | None, sigma_0: float) -> float:
 
 def has_rest(cage: Cage) -> bool:
     """Whether the cage holds placements outside the guaranteed set below safe_level(sigma_max)."""
-    if cage.sigma_first is None or cage.verdict == "not_a_cage":
+    if cage.sigma_first is None or cage.status == "not_a_cage":
         return False
     top = safe_level(cage.sigma_max, cage.sigma_0)
     return cage.sigma_first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
@@ -117,7 +117,7 @@ def draw_starts(
         found in how many tries.
     """
     which = same_set(cage, which)
-    if cage.verdict == "not_a_cage" or (which == "rest" and not has_rest(cage)):
+    if cage.status == "not_a_cage" or (which == "rest" and not has_rest(cage)):
         raise SamplingError(f"this cage has no {which} set of placements")
     box = Box.around(cage, which) if box is None else box
     found: list[FloatArray] = []

@@ -27,7 +27,7 @@ class Answer:
 
     def regions(self) -> Sequence[FingerRegion]:
         """The caging regions; none for what is not a cage."""
-        return caging_regions(self.cells) if self.cells.verdict != "not_a_cage" else ()
+        return caging_regions(self.cells) if self.cells.status != "not_a_cage" else ()
 
 
 def planned(case: Case, method: str, *, tunnels: bool = True) -> Answer:

@@ -146,7 +146,7 @@ def _another(case: Case, radii: Sequence[float]) -> PhysicalCase | None:
 
 def _cage(case: Case, known: Cage | None = None) -> Cage:
     cage = known or plan(case.outline, case.contacts, case.finger_radius)
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         raise InputError(
             f"{case.name} with fingers of radius {case.finger_radius:.6g} {case.unit} is not a "
             f"cage: {cage.why}"

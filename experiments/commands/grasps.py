@@ -122,25 +122,25 @@ def run(args: argparse.Namespace) -> int:
     from icage.errors import InputError
     from icage.formats.json_out import write_json
 
-    thing = find_object(args.object, args.width, args.unit)
-    check_output("--json", args.json, *thing.sources)
-    radius = thing.finger_radius if args.finger_radius is None else args.finger_radius
-    if radius > thing.outline.diameter:
+    case = find_object(args.object, args.width, args.unit)
+    check_output("--json", args.json, *case.sources)
+    radius = case.finger_radius if args.finger_radius is None else args.finger_radius
+    if radius > case.outline.diameter:
         raise InputError(
-            f"--finger-radius {radius:g}: the object's diameter is {thing.outline.diameter:g}"
+            f"--finger-radius {radius:g}: the object's diameter is {case.outline.diameter:g}"
         )
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
     if args.phi is not None and args.within is None:
-        planned = _of_one_hand(thing, radius, args.phi, args.aim)
+        planned = _of_one_hand(case, radius, args.phi, args.aim)
     else:
-        planned = _best(replace(thing, finger_radius=radius, target=None), args)
+        planned = _best(replace(case, finger_radius=radius, target=None), args)
     cages = planned.cages[: args.top]
     _tell(planned)
     document = {
         "format": "icage-grasps/1",
-        "name": thing.name,
-        "unit": thing.unit,
+        "name": case.name,
+        "unit": case.unit,
         "finger_radius": radius,
         "aim": args.aim,
         "grasps": [_entry(cage, args.aim) for cage in cages],
@@ -151,7 +151,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
-        _print(thing, radius, cages, args.aim)
+        _print(case, radius, cages, args.aim)
     return 0
 
 
@@ -177,16 +177,16 @@ def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
         return best_of_case(case, args.top, wanted, rng, workers, progress)
 
 
-def _of_one_hand(thing: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
+def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
     from icage.discs.offsets import offsets
     from icage.grasps.of_one_hand import grasps_of_hand
     from icage.grasps.planned import planned_grasps_of_hand
     from icage.hand import HandShape
 
     hand = HandShape.from_angles_deg(phi[0], phi[1])
-    grown = offsets(thing.outline, radius, 8).inner if radius > 0.0 else thing.outline
+    grown = offsets(case.outline, radius, 8).inner if radius > 0.0 else case.outline
     found = grasps_of_hand(grown, hand)
-    return planned_grasps_of_hand(thing.outline, radius, hand, found, aim)
+    return planned_grasps_of_hand(case.outline, radius, hand, found, aim)
 
 
 def _tell(planned: PlannedGrasps) -> None:
@@ -217,21 +217,21 @@ def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         "score": score(cage, aim),
-        "verdict": cage.verdict,
+        "verdict": cage.status,
         "free_fingers": cage.grasps[0].free_fingers,
         "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
     }
 
 
-def _print(thing: Case, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
+def _print(case: Case, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
     from experiments.cases.named import size_words
     from icage.grasps.planned import score
 
     print(
-        f"{thing.name}: {len(thing.outline)} vertices, {_fingers(radius, thing.unit)}, "
+        f"{case.name}: {len(case.outline)} vertices, {_fingers(radius, case.unit)}, "
         f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
     )
-    print(f"size {size_words(thing)}")
+    print(f"size {size_words(case)}")
     print(f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10}  phi [deg]         contacts")
     for cage in cages:
         first = _ratio(cage.sigma_first, cage.sigma_0)

@@ -48,16 +48,16 @@ def run(args: argparse.Namespace) -> int:
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)
-    thing = read_drawing(path, args.width, args.unit, args.tolerance)
-    outline = thing.outline
-    command = f"icage outline {path.name} --unit {thing.unit}"
+    case = read_drawing(path, args.width, args.unit, args.tolerance)
+    outline = case.outline
+    command = f"icage outline {path.name} --unit {case.unit}"
     for option in ("width", "tolerance"):
         if getattr(args, option) is not None:
             command += f" --{option} {getattr(args, option):g}"
     document = {
         "format": FORMAT,
         "name": path.stem,
-        "unit": thing.unit,
+        "unit": case.unit,
         "outline": {"vertices": outline.vertices},
         "made_by": command,
     }
@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
         write_json(document, args.json)
     if args.json != "-":
         print(
-            f"{path.stem}: {len(outline)} vertices, diameter {outline.diameter:.6g} {thing.unit}\n"
-            f"size {size_words(thing)}"
+            f"{path.stem}: {len(outline)} vertices, diameter {outline.diameter:.6g} {case.unit}\n"
+            f"size {size_words(case)}"
         )
     return 0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, Final
 
-from experiments.escape.run import Assault, Escape
+from experiments.escape.run import AttackResult, Escape
 from experiments.io.intervals import rate_upper
 from sim.attack.held import Attacks
 from sim.attack.measured_sigma_max import Measured
@@ -17,7 +17,7 @@ FORMAT: Final = "icage-escape/1"
 def escape_document(result: Escape) -> dict[str, Any]:
     """Levels, intervals and depths in the case's unit; time step in [s]."""
     cage, unit = result.cage, result.case.outline.diameter
-    config = None if result.arena is None else result.arena.scene.config
+    config = None if result.setup is None else result.setup.scene.config
     return {
         "format": FORMAT,
         "case": result.case.name,
@@ -30,7 +30,7 @@ def escape_document(result: Escape) -> dict[str, Any]:
         "verdict": result.verdict,
         "why": result.why,
         "failures": list(result.failures),
-        "plan_verdict": cage.verdict,
+        "plan_verdict": cage.status,
         "sigma_0": cage.sigma_0,
         "sigma_max": cage.sigma_max,
         "sigma_max_upper": cage.sigma_max_upper,
@@ -38,7 +38,7 @@ def escape_document(result: Escape) -> dict[str, Any]:
         "level_below": result.below,
         "level_above": result.above,
         "seed": result.seed,
-        "attackers": {a.attacker: _assault(a, unit) for a in result.assaults},
+        "attackers": {a.attacker: _of_attacker(a, unit) for a in result.attackers},
         "penetration_max": result.penetration_max * unit,
         "time_step": None if config is None else config.time_step,
         "solref": None if config is None else list(config.solref),
@@ -46,11 +46,11 @@ def escape_document(result: Escape) -> dict[str, Any]:
     }
 
 
-def _assault(assault: Assault, unit: float) -> dict[str, Any]:
+def _of_attacker(of_attacker: AttackResult, unit: float) -> dict[str, Any]:
     return {
-        "below": _run(assault.below, unit),
-        "above": None if assault.above is None else _run(assault.above, unit),
-        "measured": None if assault.measured is None else _measured(assault.measured, unit),
+        "below": _run(of_attacker.below, unit),
+        "above": None if of_attacker.above is None else _run(of_attacker.above, unit),
+        "measured": None if of_attacker.measured is None else _measured(of_attacker.measured, unit),
     }
 
 
@@ -86,19 +86,19 @@ def escape_table(result: Escape) -> list[str]:
     lines = [
         f"{case.name}: {len(case.outline)} vertices, diameter {unit:.6g} {case.unit}, fingers of "
         f"radius {case.finger_radius:.6g} {case.unit}, seed {result.seed}",
-        f"planned: {cage.verdict}, sigma_0 {cage.sigma_0:.6g}, sigma_max {top}",
+        f"planned: {cage.status}, sigma_0 {cage.sigma_0:.6g}, sigma_max {top}",
     ]
     if result.physical.derived:
         lines.append(result.physical.origin)
-    if result.arena is not None:
+    if result.setup is not None:
         head = ("attacker", "below", "escaped", "rate <", "above", "escaped", "deepest", "overrun",
                 "measured sigma_max", "off by", "seen")  # fmt: skip
-        rows = [head, *(_row(result, a) for a in result.assaults)]
+        rows = [head, *(_row(result, a) for a in result.attackers)]
         widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
         lines += [
             "  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True)) for row in rows
         ]
-        config = result.arena.scene.config
+        config = result.setup.scene.config
         above = "-" if result.above is None else f"{result.above:.6g}"
         lines.append(
             f"below {result.below:.6g}, above {above}; rate: under this at 95 % (exact one-sided "
@@ -113,8 +113,8 @@ def escape_table(result: Escape) -> list[str]:
     return lines
 
 
-def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
-    below, above, found = assault.below, assault.above, assault.measured
+def _row(result: Escape, of_attacker: AttackResult) -> tuple[str, ...]:
+    below, above, found = of_attacker.below, of_attacker.above, of_attacker.measured
     unit, top = result.case.outline.diameter, result.cage.sigma_max
     runs = [run for run in (below, above) if run is not None]
     interval, off, seen = "-", "-", "-"
@@ -124,7 +124,7 @@ def _row(result: Escape, assault: Assault) -> tuple[str, ...]:
         off += f"{100.0 * (found.high * unit / top - 1.0):+.3f} %"
         seen = f"{100.0 * (found.seen * unit / top - 1.0):+.3f} %"
     return (
-        assault.attacker, str(len(below)), str(below.escapes),
+        of_attacker.attacker, str(len(below)), str(below.escapes),
         f"{100.0 * rate_upper(below.escapes, len(below)):.1f} %",
         *(("-", "-") if above is None else (str(len(above)), str(above.escapes))),
         f"{max(float(run.penetration_max.max()) for run in runs):.1e}",

@@ -15,7 +15,7 @@ from typing import Final, Literal
 import numpy as np
 
 from experiments.cases.with_discs import PhysicalCase, physical_case
-from experiments.escape.setup import Arena
+from experiments.escape.setup import AttackSetup
 from icage.cage import Cage
 from icage.case import Case
 from icage.errors import InputError
@@ -46,7 +46,7 @@ Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Assault:
+class AttackResult:
     """One attacker: its attacks below and above (None: there is no above), and its interval."""
 
     attacker: str
@@ -76,10 +76,10 @@ class Escape:
     seed: int
     verdict: Verdict = "ok"
     why: str | None = None
-    arena: Arena | None = None
+    setup: AttackSetup | None = None
     below: float | None = None
     above: float | None = None
-    assaults: tuple[Assault, ...] = ()
+    attackers: tuple[AttackResult, ...] = ()
     failures: tuple[str, ...] = ()
 
     @property
@@ -95,7 +95,7 @@ class Escape:
     @property
     def penetration_max(self) -> float:
         """[diameter] Deepest finger in the attacks at both levels."""
-        runs = [run for a in self.assaults for run in (a.below, a.above) if run is not None]
+        runs = [run for a in self.attackers for run in (a.below, a.above) if run is not None]
         return max((float(run.penetration_max.max()) for run in runs), default=0.0)
 
 
@@ -115,7 +115,7 @@ def escape(case: Case, attacks: int, seed: int, threads: int, report: Report) ->
     """
     report("planning", 0, 1)
     cage = plan(case.outline, case.contacts, case.finger_radius)
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         why = f"not_a_cage ({cage.why}): nothing to attack"
         return Escape(PhysicalCase.of(case, cage), attacks, seed, why=why)
     try:
@@ -152,42 +152,48 @@ def _attacked(
     streams = rng.spawn(9)
     if cage.sigma_max is None:
         below = cage.sigma_largest or cage.sigma_0
-        arena = Arena.of(blank.physical, below, threads)
+        setup = AttackSetup.of(blank.physical, below, threads)
         report("attacks", 0, 1)
-        only = Assault("random", arena.random(np.full(attacks, below / unit), streams[0]))
+        only = AttackResult("random", setup.random(np.full(attacks, below / unit), streams[0]))
         report("attacks", 1, 1)
-        return replace(blank, arena=arena, below=below, assaults=(only,))
+        return replace(blank, setup=setup, below=below, attackers=(only,))
     upper = cage.sigma_max_upper or cage.sigma_max
     levels = at(cage.sigma_max, cage.sigma_0, -1), at(upper, cage.sigma_0, 1)
-    arena = Arena.of(blank.physical, levels[0], threads)
+    setup = AttackSetup.of(blank.physical, levels[0], threads)
     room = min(0.05 * upper, 0.5 * (upper - cage.sigma_0))
     window = ((cage.sigma_max - room) / unit, (upper + room) / unit)
 
-    def assault(name: str, attack_at: AttackAt, number: int, rounds: int, repeats: int) -> Assault:
+    def of_attacker(
+        name: str, attack_at: AttackAt, number: int, rounds: int, repeats: int
+    ) -> AttackResult:
         first = 3 * ATTACKERS.index(name)
         report("attacks", first, 9)
         below = attack_at(np.full(number, levels[0] / unit), streams[first])
         if name == "random" and name not in measuring:
-            return Assault(name, below)  # above it proves nothing: it may or may not find the way
+            return AttackResult(
+                name, below
+            )  # above it proves nothing: it may or may not find the way
         report("attacks", first + 1, 9)
         above = attack_at(np.full(number, levels[1] / unit), streams[first + 1])
         if name not in measuring:
-            return Assault(name, below, above)
+            return AttackResult(name, below, above)
         report("attacks", first + 2, 9)
         found = measure(
             attack_at, window, streams[first + 2], rounds=rounds, sections=4, repeats=repeats,
             known=(below, above),
         )  # fmt: skip
-        return Assault(name, below, above, found)
+        return AttackResult(name, below, above, found)
 
-    random = assault("random", arena.random, attacks, 2, min(max(4, attacks // 4), MOST_REPEATS))
-    assaults = [random, assault("guided", arena.guided, attacks, 4, 3)]
-    rigid = arena.rigid(random.below)
+    random = of_attacker(
+        "random", setup.random, attacks, 2, min(max(4, attacks // 4), MOST_REPEATS)
+    )
+    attackers = [random, of_attacker("guided", setup.guided, attacks, 4, 3)]
+    rigid = setup.rigid(random.below)
     if rigid is not None:
-        assaults.append(assault("rigid", rigid, min(attacks, MOST_TREES), 4, 2))
+        attackers.append(of_attacker("rigid", rigid, min(attacks, MOST_TREES), 4, 2))
     report("attacks", 9, 9)
     return replace(
-        blank, arena=arena, below=levels[0], above=levels[1], assaults=tuple(assaults)
+        blank, setup=setup, below=levels[0], above=levels[1], attackers=tuple(attackers)
     )  # fmt: skip
 
 
@@ -202,27 +208,28 @@ def judged(result: Escape) -> Escape:
                 f"penetration of {result.penetration_max:.2g}"
             )
             return replace(result, verdict="too_thin_for_physics", why=why)
-    failures = tuple(sentence for a in result.assaults for sentence in _failures(result, a))
+    failures = tuple(sentence for a in result.attackers for sentence in _failures(result, a))
     return replace(result, failures=failures, verdict="failed" if failures else "ok")
 
 
-def _failures(result: Escape, assault: Assault) -> Iterator[str]:
+def _failures(result: Escape, of_attacker: AttackResult) -> Iterator[str]:
     """What did not hold. Nothing is forgiven: the limits are those promised."""
-    name = f"{result.case.name}: {assault.attacker} attacks"
-    for run in (assault.below, assault.above):
+    name = f"{result.case.name}: {of_attacker.attacker} attacks"
+    for run in (of_attacker.below, of_attacker.above):
         if run is not None and run.diverged:
             yield f"{name}: {run.diverged} of {len(run)} diverged (seed {result.seed})"
-    if assault.below.escapes:
-        yield f"{name}: {assault.below.escapes} of {len(assault.below)} escaped below sigma_max"
-    if assault.attacker == "guided" and assault.above is not None:
-        out, tried = assault.above.escapes, len(assault.above)
+    if of_attacker.below.escapes:
+        count = len(of_attacker.below)
+        yield f"{name}: {of_attacker.below.escapes} of {count} escaped below sigma_max"
+    if of_attacker.attacker == "guided" and of_attacker.above is not None:
+        out, tried = of_attacker.above.escapes, len(of_attacker.above)
         if out < SURE * tried:
             yield f"{name}: only {out} of {tried} escaped above sigma_max along the plan's way out"
-    top, found, unit = result.cage.sigma_max, assault.measured, result.case.outline.diameter
+    top, found, unit = result.cage.sigma_max, of_attacker.measured, result.case.outline.diameter
     if found is None or top is None:
         return
     low, high = at(top, result.cage.sigma_0, -1), result.above or math.inf
     if found.high * unit < low:
         yield f"{name} measure a sigma_max of at most {found.high * unit:.6g}; planned {top:.6g}"
-    if assault.attacker == "guided" and found.low * unit > high:
+    if of_attacker.attacker == "guided" and found.low * unit > high:
         yield f"{name} measure a sigma_max of at least {found.low * unit:.6g}; planned {top:.6g}"

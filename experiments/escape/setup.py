@@ -19,7 +19,7 @@ from sim.world.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
-class Arena:
+class AttackSetup:
     """Everything that the attacks on one cage share.
 
     Attributes
@@ -35,26 +35,26 @@ class Arena:
     scene: Scene
     model: MjModel
     target: FloatArray
-    door: FloatArray
+    at_pass: FloatArray
     path: FloatArray | None
     threads: int
 
     @classmethod
-    def of(cls, physical: PhysicalCase, below: float, threads: int) -> Arena:
+    def of(cls, physical: PhysicalCase, below: float, threads: int) -> AttackSetup:
         """The arena of a cage; ``below`` [unit] is the level below sigma_max."""
         cage, scene = physical.cage, physical.simulated.scene()
         target = scene.start_positions(cage.target_placement.as_array())[0]
         if cage.escape_path is None:
             return cls(scene, held_model(scene), target, target, None, threads)
         path = object_path(scene, cage.escape_path)
-        wide = path[:, 3] >= min(below / scene.thing.unit, float(path[:, 3].max()))
+        wide = path[:, 3] >= min(below / scene.object.diameter, float(path[:, 3].max()))
         way = path[max(int(wide.argmax()) - 1, 0)]
-        door = np.concatenate([way[3] * scene.kinematics.lengths, way[:3]])
-        return cls(scene, held_model(scene), target, door, path, threads)
+        at_pass = np.concatenate([way[3] * scene.kinematics.lengths, way[:3]])
+        return cls(scene, held_model(scene), target, at_pass, path, threads)
 
     def random(self, openings: FloatArray, rng: np.random.Generator) -> Attacks:
         """Random attacks at openings (N,) [diameter]: from the target and from the door in turn."""
-        starts = np.where(np.arange(len(openings))[:, None] % 2 == 0, self.target, self.door)
+        starts = np.where(np.arange(len(openings))[:, None] % 2 == 0, self.target, self.at_pass)
         starts[self.scene.sigma(starts) > openings] = self.target
         driver = RandomDriver(self.scene, openings, rng)
         return attack(self.scene, self.model, starts, openings, driver, self.threads)

@@ -39,7 +39,7 @@ FIGURE_SETTINGS: dict[RcKeyType, Any] = {
 
 def figure_regions(cage: Cage) -> tuple[FingerRegion, ...]:
     """The regions a figure shows: at sigma_max (or all of it), and at sigma_first where lower."""
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         return ()
     regions = caging_regions(cage)
     if cage.sigma_first is not None and cage.sigma_first != cage.sigma_max:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from experiments.escape.run import Assault
+from experiments.escape.run import AttackResult
 from experiments.io.intervals import rate_upper
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
@@ -32,7 +32,7 @@ def row_document(row: Row) -> dict[str, Any]:
 
 def _levels(cage: Cage) -> dict[str, Any]:
     return {
-        "verdict": cage.verdict,
+        "verdict": cage.status,
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
@@ -68,7 +68,7 @@ def _attacks(row: Row) -> dict[str, Any] | None:
     if row.escape is None:
         return None
     done = row.escape
-    config = None if done.arena is None else done.arena.scene.config
+    config = None if done.setup is None else done.setup.scene.config
     return {
         "verdict": done.verdict,
         "why": done.why,
@@ -77,16 +77,16 @@ def _attacks(row: Row) -> dict[str, Any] | None:
         "penetration": done.penetration_max,
         "time_step": None if config is None else config.time_step,
         "solref": None if config is None else list(config.solref),
-        **{a.attacker: _assault(a, row) for a in done.assaults},
+        **{a.attacker: _of_attacker(a, row) for a in done.attackers},
     }
 
 
-def _assault(assault: Assault, row: Row) -> dict[str, Any]:
+def _of_attacker(result: AttackResult, row: Row) -> dict[str, Any]:
     assert row.physical is not None
-    found, unit = assault.measured, row.physical.case.outline.diameter
+    found, unit = result.measured, row.physical.case.outline.diameter
     return {
-        "below": _run(assault.below),
-        "above": None if assault.above is None else _run(assault.above),
+        "below": _run(result.below),
+        "above": None if result.above is None else _run(result.above),
         "measured": None
         if found is None
         else [found.low * unit, found.high * unit if math.isfinite(found.high) else None],

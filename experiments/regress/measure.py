@@ -95,7 +95,7 @@ def measure(entry: Entry, effort: Effort, seed: int = SEED) -> Row:
     case = read_case(entry.path)
     planned = plan_both(case)
     row = Row(entry.name, planned, seed, effort)
-    if planned.cells.verdict == "not_a_cage":
+    if planned.cells.status == "not_a_cage":
         return replace(row, why=f"not_a_cage: {planned.cells.why}")
     try:
         physical = physical_case(case, cage=planned.cells)
@@ -175,7 +175,7 @@ def _second(row: Row, count: int, seed: int) -> Second:
     if cage.sigma_max is None:
         return Second(closed, None)
     scene = physical.simulated.scene()
-    level = at(cage.sigma_max, cage.sigma_0, -1) / scene.thing.unit
+    level = at(cage.sigma_max, cage.sigma_0, -1) / scene.object.diameter
     start = scene.start_positions(cage.target_placement.as_array())
     pull = RandomPull(duration=SECOND_ATTACK)
     attacks = random_attack_second(

@@ -21,7 +21,7 @@ import shapely
 
 from experiments.io.arrow_table import Table
 from experiments.io.versions import versions
-from icage.cage import Cage, GraspMinimum
+from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import HandShape, Placement
@@ -188,7 +188,7 @@ def recorded_cage(trial: RecordedTrial) -> Cage:
         hand=trial.hand,
         finger_radius=plan["finger_radius"],
         contacts=np.array(plan["contacts"]),
-        verdict=plan["verdict"],
+        status=CageStatus(plan["verdict"]),
         why=plan.get("why"),
         sigma_0=plan["sigma_0"],
         sigma_first=plan["sigma_first"],

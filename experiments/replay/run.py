@@ -105,7 +105,7 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
         report("planning", number, len(cases))
         cage = plan(case.outline, case.contacts, case.finger_radius)
         second = plan(case.outline, case.contacts, case.finger_radius, CONTACT_SPACE)
-        if cage.verdict == "not_a_cage":
+        if cage.status == "not_a_cage":
             raise InputError(f"{case.name} is not a cage ({cage.why}): there is nothing to replay")
         scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
         for which in _sets(cage):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import BoolArray, ComplexArray, FloatArray
-from icage.cells.solver import Search
+from icage.cells.free_space import Search
 from icage.geometry.exterior import Pieces
 
 _INSIDE = 1e-9
@@ -17,7 +17,7 @@ _INSIDE = 1e-9
 
 def largest_sigma_in(found: Search) -> float:
     """Largest |w| over all visited cells, [unit]."""
-    pieces, z = found.terrain.pieces, found.terrain.hand.z
+    pieces, z = found.free_space.pieces, found.free_space.hand.z
     return max(_largest_in_cell(pieces, z, [int(v) for v in row[:3]]) for row in found.nodes)
 
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage
+from icage.cells.free_space import CELL_LIMIT, FreeSpace, inside_cells
 from icage.cells.kernels.escape import escape_levels, new_memory, shrinkable
 from icage.cells.kernels.tree import find_at
-from icage.cells.solver import CELL_LIMIT, Terrain, inside_cells
 from icage.cells.work import CageWork, work_of
 from icage.errors import GeometryError, PlacementError
 from icage.geometry.near_frame import NearFrame
@@ -118,8 +118,8 @@ class Answers:
 class EscapeLevels:
     """Escape levels of cells outside the cage, found when asked for and remembered."""
 
-    def __init__(self, terrain: Terrain) -> None:
-        self._terrain = terrain
+    def __init__(self, free_space: FreeSpace) -> None:
+        self._free_space = free_space
         keys, levels = new_memory()
         self._memory: tuple[IntArray, FloatArray] = (keys.astype(np.int64), levels)
 
@@ -131,10 +131,10 @@ class EscapeLevels:
         GeometryError:
             A search met more than ``CELL_LIMIT`` cells.
         """
-        terrain = self._terrain
+        free_space = self._free_space
         levels, known, of_known = escape_levels(
-            terrain.pieces, terrain.z, cells, sigma, terrain.cap, terrain.worst, CELL_LIMIT,
-            *self._memory,
+            free_space.pieces, free_space.z, cells, sigma, free_space.cap, free_space.worst,
+            CELL_LIMIT, *self._memory,
         )  # fmt: skip
         self._memory = (np.asarray(known, dtype=np.int64), of_known)
         if np.isnan(levels).any():
@@ -144,28 +144,28 @@ class EscapeLevels:
 
 @dataclass(frozen=True, slots=True)
 class Locator:
-    """Point location in the pieces of one terrain."""
+    """Point location in the pieces of one free space."""
 
-    terrain: Terrain
+    free_space: FreeSpace
     low: FloatArray
     size: float
     start: IntArray
     items: IntArray
 
     @classmethod
-    def of(cls, terrain: Terrain) -> Locator:
+    def of(cls, free_space: FreeSpace) -> Locator:
         """Bucket the pieces on a grid over the object's surroundings."""
-        ring = terrain.outline.vertices - terrain.origin
-        margin = 0.25 * terrain.outline.diameter
+        ring = free_space.outline.vertices - free_space.origin
+        margin = 0.25 * free_space.outline.diameter
         low = ring.min(axis=0) - margin
         size = float((ring.max(axis=0) + margin - low).max()) / _GRID
-        start, items = build_buckets(terrain.pieces, low[0], low[1], size, _GRID)
-        return cls(terrain, low, size, start, items)
+        start, items = build_buckets(free_space.pieces, low[0], low[1], size, _GRID)
+        return cls(free_space, low, size, start, items)
 
     def cells(self, fingers: FloatArray, tolerance: float) -> IntArray:
-        """Pieces of fingers (n, 3, 2) given in the terrain's frame; -1 where there is none."""
+        """Pieces of fingers (n, 3, 2) given in the free space's frame; -1 where there is none."""
         return cells_of(
-            self.terrain.pieces, fingers - self.terrain.origin, self.start, self.items,
+            self.free_space.pieces, fingers - self.free_space.origin, self.start, self.items,
             self.low[0], self.low[1], self.size, _GRID, tolerance,
         )  # fmt: skip
 
@@ -256,7 +256,7 @@ def _cells(work: CageWork, fingers: FloatArray, found: IntArray, size: float) ->
 
 def _inside_nodes(work: CageWork, cells: IntArray) -> IntArray:
     found = work.search
-    m = found.terrain.pieces.total
+    m = found.free_space.pieces.total
     return nodes_of(found.keys, found.values, cells, m, inside_cells(found))
 
 
@@ -285,18 +285,18 @@ def _judge_outside(
     nodes: IntArray, verdict: IntArray, margin: FloatArray,
 ) -> None:  # fmt: skip
     """Placements in other cells: is there a way out at their own sigma?"""
-    terrain = work.search.terrain
+    free_space = work.search.free_space
     sigma = rows[free, 3]
-    asked = np.flatnonzero((nodes[free] < 0) & (cells >= 0).all(axis=1) & (sigma < terrain.cap))
+    asked = np.flatnonzero((nodes[free] < 0) & (cells >= 0).all(axis=1) & (sigma < free_space.cap))
     # most hands off the object can shrink to a point where they stand
     at = rows[free[asked]]
     hands = np.column_stack(
         [
-            at[:, :2] - terrain.origin,
+            at[:, :2] - free_space.origin,
             sigma[asked, None] * np.column_stack([np.cos(at[:, 2]), np.sin(at[:, 2])]),
         ]
     )
-    asked = asked[~shrinkable(terrain.pieces, terrain.z, hands)]
+    asked = asked[~shrinkable(free_space.pieces, free_space.z, hands)]
     # small sigmas last: what the large ones have taught answers most of them
     asked = asked[np.argsort(-sigma[asked], kind="stable")]
     reach = sigma[asked] * (1.0 + LEVEL)
@@ -311,7 +311,7 @@ def _locator(work: CageWork) -> Locator:
     """The point location of a cage, built once."""
     kept = work.remembered.get("locator")
     if not isinstance(kept, Locator):
-        kept = Locator.of(work.search.terrain)
+        kept = Locator.of(work.search.free_space)
         work.remembered["locator"] = kept
     return kept
 
@@ -320,6 +320,6 @@ def _escape_levels(work: CageWork) -> EscapeLevels:
     """The escape levels met so far."""
     kept = work.remembered.get("escapes")
     if not isinstance(kept, EscapeLevels):
-        kept = EscapeLevels(work.search.terrain)
+        kept = EscapeLevels(work.search.free_space)
         work.remembered["escapes"] = kept
     return kept

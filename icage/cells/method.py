@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from icage.arrays import FloatArray
-from icage.cage import Cage, not_a_cage
+from icage.cage import Cage, CageStatus, not_a_cage
+from icage.cells.free_space import FreeSpace, Search, Tree, merge_tree, search
 from icage.cells.largest_sigma import largest_sigma_in
 from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
-from icage.cells.solver import Search, Terrain, Tree, merge_tree, search
 from icage.cells.target import Target, contacts_as_configuration, find_target
 from icage.cells.why_not import plateau_reason, why_not
 from icage.cells.work import CageWork
@@ -20,7 +20,7 @@ from icage.tolerance import DEPTH_CUT, NOT_A_CAGE
 
 
 @dataclass(frozen=True, slots=True)
-class CellsLook:
+class CellsLocalCage:
     """A target on one polygon and the search from it. See ``icage.method.Look``."""
 
     target: Target
@@ -38,7 +38,7 @@ class CellsLook:
 
     def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
         """The cage on this polygon."""
-        return cage_on(self.found.terrain, contacts, self.target, outline, radius, self.found)
+        return cage_on(self.found.free_space, contacts, self.target, outline, radius, self.found)
 
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None."""
@@ -58,47 +58,47 @@ class Cells:
         radius: float,
     ) -> Cage:  # fmt: skip
         """The cage of point fingers on a polygon, or why there is none."""
-        terrain = Terrain.around(polygon, hand)
-        target = find_target(terrain, contacts_as_configuration(terrain, contacts))
-        return cage_on(terrain, contacts, target, outline, radius)
+        free_space = FreeSpace.around(polygon, hand)
+        target = find_target(free_space, contacts_as_configuration(free_space, contacts))
+        return cage_on(free_space, contacts, target, outline, radius)
 
-    def look(
+    def local_cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> CellsLook | None:
+    ) -> CellsLocalCage | None:
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        terrain = Terrain.around(polygon, hand)
-        wanted = contacts_as_configuration(terrain, contacts)
-        target = find_target(terrain, wanted, reach=reach, turn=turn)
+        free_space = FreeSpace.around(polygon, hand)
+        wanted = contacts_as_configuration(free_space, contacts)
+        target = find_target(free_space, wanted, reach=reach, turn=turn)
         if target is None or target.plateau is not None:
             return None
-        found = search(terrain, target.cell, target.sigma_0)
+        found = search(free_space, target.cell, target.sigma_0)
         if found.gave_up:
             raise GeometryError(f"the search gave up after {len(found.nodes)} cells")
-        return CellsLook(target, found)
+        return CellsLocalCage(target, found)
 
 
 CELLS = Cells()
 
 
 def cage_on(
-    terrain: Terrain,
+    free_space: FreeSpace,
     contacts: FloatArray,
     target: Target | None,
     outline: Outline,
     radius: float = 0.0,
     known: Search | None = None,
 ) -> Cage:
-    """The cage of a target on the polygon of a terrain, whose fingers are points.
+    """The cage of a target on the polygon of a free space, whose fingers are points.
 
     ``known`` is the search from the target, where it has been made already.
     """
-    hand = terrain.hand
+    hand = free_space.hand
     if target is None:
-        return not_a_cage(outline, hand, contacts, why_not(terrain, contacts), radius)
+        return not_a_cage(outline, hand, contacts, why_not(free_space, contacts), radius)
     if target.plateau is not None:
-        why = plateau_reason(target.plateau, terrain)
+        why = plateau_reason(target.plateau, free_space)
         return not_a_cage(outline, hand, contacts, why, radius)
-    found = search(terrain, target.cell, target.sigma_0) if known is None else known
+    found = search(free_space, target.cell, target.sigma_0) if known is None else known
     if found.gave_up:
         raise GeometryError(f"the search gave up after {len(found.nodes)} cells")
     tree = merge_tree(found)
@@ -108,7 +108,7 @@ def cage_on(
     if top / target.sigma_0 - 1.0 < NOT_A_CAGE:
         why = ISOLATED if largest is not None else no_depth_reason(top / target.sigma_0)
         return not_a_cage(outline, hand, contacts, why, radius)
-    size = terrain.pieces.diameter
+    size = free_space.pieces.diameter
     path, gap = escape_path(found, target) if found.escaped else (None, None)
     first = punctures[0].sigma if punctures else None
     return Cage(
@@ -116,7 +116,7 @@ def cage_on(
         hand=hand,
         finger_radius=radius,
         contacts=grasps[0].contacts,
-        verdict="cage" if found.escaped else "never_escapes",
+        status=CageStatus.CAGE if found.escaped else CageStatus.NEVER_ESCAPES,
         why=None,
         sigma_0=target.sigma_0,
         sigma_first=first,

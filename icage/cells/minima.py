@@ -8,7 +8,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
-from icage.cells.solver import Configuration, Search, Terrain, Tree, below_escape
+from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
 from icage.geometry.way_out import corners_before_pinch
@@ -56,14 +56,14 @@ def grasps_and_punctures(
     found: Search, tree: Tree, target: Target
 ) -> tuple[tuple[GraspMinimum, ...], tuple[Puncture, ...], tuple[int, ...]]:
     """All grasps (the target first), the punctures in ascending order, and each grasp's node."""
-    terrain = found.terrain
-    met = joinings(tree, DEPTH_CUT * terrain.pieces.diameter)
+    free_space = found.free_space
+    met = joinings(tree, DEPTH_CUT * free_space.pieces.diameter)
     others: list[tuple[GraspMinimum, int]] = []
     for joining in met:
         for node in joining.minima:
-            others.append((_grasp(terrain, found, tree, node, joining.sigma), node))
+            others.append((_grasp(free_space, found, tree, node, joining.sigma), node))
     others.sort(key=lambda pair: (round(pair[0].sigma, 12), pair[0].contacts.ravel().tolist()))
-    first = _target_grasp(terrain, target)
+    first = _target_grasp(free_space, target)
     ids = {node: k + 1 for k, (_, node) in enumerate(others)}
     grasps = [first] + [_with_id(g, k + 1) for k, (g, _) in enumerate(others)]
     punctures = _intermediate(found, met, ids)
@@ -85,45 +85,45 @@ def _with_id(grasp: GraspMinimum, number: int) -> GraspMinimum:
     )
 
 
-def _target_grasp(terrain: Terrain, target: Target) -> GraspMinimum:
-    contacts = terrain.contacts(target.at)
+def _target_grasp(free_space: FreeSpace, target: Target) -> GraspMinimum:
+    contacts = free_space.contacts(target.at)
     return GraspMinimum(
         0,
         True,
         target.sigma_0,
         contacts,
-        _plateau_contacts(terrain, target.plateau),
-        free_fingers(terrain.outline, contacts),
+        _plateau_contacts(free_space, target.plateau),
+        free_fingers(free_space.outline, contacts),
         target.sigma_0,
     )
 
 
 def _grasp(
-    terrain: Terrain, found: Search, tree: Tree, node: int, joined_at: float
+    free_space: FreeSpace, found: Search, tree: Tree, node: int, joined_at: float
 ) -> GraspMinimum:
     sigma, wx, wy = tree.birth[node].tolist()
     finger, slot = tree.birth_at[node].tolist()
-    a, b = terrain.on_edge(found.nodes[node, :3], finger, slot, wx, wy)
+    a, b = free_space.on_edge(found.nodes[node, :3], finger, slot, wx, wy)
     here = Configuration(0.5 * (a.d + b.d), a.w)
-    plateau = plateau_through(terrain, here, sigma)
-    contacts = terrain.contacts(here)
+    plateau = plateau_through(free_space, here, sigma)
+    contacts = free_space.contacts(here)
     return GraspMinimum(
         -1,
         False,
         sigma,
         contacts,
-        _plateau_contacts(terrain, plateau),
-        free_fingers(terrain.outline, contacts),
+        _plateau_contacts(free_space, plateau),
+        free_fingers(free_space.outline, contacts),
         joined_at,
     )
 
 
 def _plateau_contacts(
-    terrain: Terrain, plateau: tuple[Configuration, Configuration] | None
+    free_space: FreeSpace, plateau: tuple[Configuration, Configuration] | None
 ) -> tuple[FloatArray, FloatArray] | None:
     if plateau is None:
         return None
-    return terrain.contacts(plateau[0]), terrain.contacts(plateau[1])
+    return free_space.contacts(plateau[0]), free_space.contacts(plateau[1])
 
 
 def _intermediate(found: Search, met: list[Joining], ids: dict[int, int]) -> list[Puncture]:
@@ -138,14 +138,14 @@ def _intermediate(found: Search, met: list[Joining], ids: dict[int, int]) -> lis
                 last.sigma, "intermediate", joins, last.contacts, last.free_fingers
             )
             continue
-        contacts = found.terrain.contacts(found.edge_configuration(joining.edge))
+        contacts = found.free_space.contacts(found.edge_configuration(joining.edge))
         punctures.append(
             Puncture(
                 joining.sigma,
                 "intermediate",
                 joins,
                 contacts,
-                free_fingers(found.terrain.outline, contacts),
+                free_fingers(found.free_space.outline, contacts),
             )
         )
     return punctures
@@ -169,9 +169,9 @@ def path_edges(found: Search) -> list[int]:
 
 
 def _escape(found: Search) -> Puncture:
-    contacts = found.terrain.contacts(found.edge_configuration(escape_edge(found)))
+    contacts = found.free_space.contacts(found.edge_configuration(escape_edge(found)))
     return Puncture(
-        found.level, "escape", (), contacts, free_fingers(found.terrain.outline, contacts)
+        found.level, "escape", (), contacts, free_fingers(found.free_space.outline, contacts)
     )
 
 
@@ -183,9 +183,9 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     """
     points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
     # the last piece, or the finger that stands still, takes all three
-    still = found.terrain.contacts(points[-1])[max(found.standing, 0)]
+    still = found.free_space.contacts(points[-1])[max(found.standing, 0)]
     # a last pass that is a pinched hand already is the end itself
-    points = points[: corners_before_pinch([p.w for p in points], found.terrain.pieces.diameter)]
-    rows = [found.terrain.placement(p) for p in points]
+    points = points[: corners_before_pinch([p.w for p in points], found.free_space.pieces.diameter)]
+    rows = [found.free_space.placement(p) for p in points]
     rows.append(np.array([*still, rows[-1][2], 0.0]))
-    return np.array(rows), found.terrain.hand.least_gap([p.w for p in points])
+    return np.array(rows), found.free_space.hand.least_gap([p.w for p in points])

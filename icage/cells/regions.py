@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
+from icage.cells.free_space import FreeSpace
 from icage.cells.kernels.region import all_sandwiches, least_points
-from icage.cells.solver import Terrain
 from icage.cells.work import CageWork, work_of
 from icage.errors import InputError
 from icage.geometry.geos import union
@@ -101,14 +101,14 @@ def outer_bounds(
     if work is None:
         return ()
     _, below = _levels(cage, work, level, gap)
-    size = work.search.terrain.pieces.diameter
+    size = work.search.free_space.pieces.diameter
     bounds: list[shapely.MultiPolygon] = []
     back = NearFrame.of(cage.outline).back
     for finger in range(3):
         nodes, points = _cells_and_points(work, finger, below)
         enough = _first_try(work, finger, below, gap, nodes, points)
         _, around = _sandwiches(work, finger, below, enough, nodes, points)
-        bound = _union(work.search.terrain, around, _grid(around, gap, size))
+        bound = _union(work.search.free_space, around, _grid(around, gap, size))
         bounds.append(shapely.transform(bound, back))
     return tuple(bounds)
 
@@ -117,7 +117,7 @@ def _levels(cage: Cage, work: CageWork, level: float | None, gap: float) -> tupl
     """The level asked for, checked, and the one just below it that is computed with."""
     if not 0.0 < gap < 1.0:
         raise InputError(f"area gap {gap}; a number between 0 and 1 is needed")
-    top = cage.sigma_max if cage.sigma_max is not None else work.search.terrain.cap
+    top = cage.sigma_max if cage.sigma_max is not None else work.search.free_space.cap
     chosen = top if level is None else float(level)
     if not cage.sigma_0 < chosen <= top:
         raise InputError(f"level {chosen}; above sigma_0 = {cage.sigma_0}, up to {top} is allowed")
@@ -136,17 +136,17 @@ def _bounds(
     work: CageWork, finger: int, level: float, gap: float
 ) -> tuple[shapely.MultiPolygon, shapely.MultiPolygon, float]:
     """Inner and outer region of a finger (0..2), refined until their areas agree."""
-    terrain = work.search.terrain
+    free_space = work.search.free_space
     nodes, points = _cells_and_points(work, finger, level)
-    size = terrain.pieces.diameter
+    size = free_space.pieces.diameter
     enough = _first_try(work, finger, level, gap, nodes, points)
     inner = outer = shapely.MultiPolygon()
     found = 1.0
     for attempt in range(_REFINEMENTS + 1):
         within, around = _sandwiches(work, finger, level, enough, nodes, points)
         grid = _grid(around, gap, size)
-        inner = _union(terrain, within, grid)
-        outer = _union(terrain, around, grid)
+        inner = _union(free_space, within, grid)
+        outer = _union(free_space, around, grid)
         found = 1.0 - inner.area / outer.area if outer.area > 0.0 else 0.0
         if found <= gap:
             break
@@ -159,7 +159,7 @@ def _first_try(
     work: CageWork, finger: int, level: float, gap: float, nodes: IntArray, points: FloatArray
 ) -> float:
     """[unit^2] How much area inner and outer polygon of a cell may differ by at first."""
-    rough = _ROUGH * work.search.terrain.pieces.diameter**2
+    rough = _ROUGH * work.search.free_space.pieces.diameter**2
     few = nodes[:_FIRST_FEW], points[:_FIRST_FEW]
     _, around = _sandwiches(work, finger, level, rough, *few)
     largest = float(shapely.area(around).max(initial=0.0))
@@ -170,10 +170,10 @@ def _sandwiches(
     work: CageWork, finger: int, level: float, enough: float, nodes: IntArray, points: FloatArray
 ) -> tuple[Polygons, Polygons]:
     """Convex polygons within and around where a finger may be, cell by cell."""
-    terrain = work.search.terrain
-    slack = _SLACK * terrain.pieces.diameter
+    free_space = work.search.free_space
+    slack = _SLACK * free_space.pieces.diameter
     within, in_counts, around, out_counts = all_sandwiches(
-        terrain.pieces, terrain.z, finger, nodes, points, level, enough, slack
+        free_space.pieces, free_space.z, finger, nodes, points, level, enough, slack
     )
     return _polygons(within, in_counts), _polygons(around, out_counts)
 
@@ -186,7 +186,7 @@ def _cells_and_points(work: CageWork, finger: int, level: float) -> tuple[IntArr
     cells = np.ascontiguousarray(found.nodes[use, :3])
     w, at = tree.birth[use, 1:], tree.birth_at[use]
     points = least_points(
-        found.terrain.pieces, found.terrain.z, finger, cells,
+        found.free_space.pieces, found.free_space.z, finger, cells,
         w[:, 0], w[:, 1], at[:, 0].astype(np.int64), at[:, 1].astype(np.int64),
     )  # fmt: skip
     return cells, points
@@ -209,10 +209,10 @@ def _grid(polygons: Polygons, gap: float, size: float) -> float:
     return float(np.clip(1e-3 * gap * thickest, 1e-14 * size, _GRID * size))
 
 
-def _union(terrain: Terrain, polygons: Polygons, grid: float) -> shapely.MultiPolygon:
-    """Union of convex polygons in the terrain's frame, outer rings counterclockwise."""
+def _union(free_space: FreeSpace, polygons: Polygons, grid: float) -> shapely.MultiPolygon:
+    """Union of convex polygons in the free space's frame, outer rings counterclockwise."""
     united = union(polygons, grid, "caging region")
     parts = [p for p in shapely.get_parts(united) if isinstance(p, shapely.Polygon)]
-    moved = shapely.transform(shapely.MultiPolygon(parts), lambda xy: xy + terrain.origin)
+    moved = shapely.transform(shapely.MultiPolygon(parts), lambda xy: xy + free_space.origin)
     oriented = [shapely.orient_polygons(p) for p in shapely.get_parts(moved)]
     return shapely.MultiPolygon(oriented)

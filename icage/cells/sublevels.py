@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import FloatArray
+from icage.cells.free_space import FreeSpace
 from icage.cells.kernels.tree import all_passes, merge
-from icage.cells.solver import Terrain
 from icage.errors import InputError
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -29,12 +29,15 @@ def births_and_merges(outline: Outline, hand: HandShape) -> FloatArray:
     InputError:
         The outline needs more than ``MOST_PIECES`` convex pieces around it.
     """
-    terrain = Terrain.around(outline, hand)
-    if terrain.pieces.total > MOST_PIECES:
+    free_space = FreeSpace.around(outline, hand)
+    if free_space.pieces.total > MOST_PIECES:
         raise InputError(
-            f"the outline needs {terrain.pieces.total} pieces; up to {MOST_PIECES} are allowed here"
+            f"the outline needs {free_space.pieces.total} pieces; up to {MOST_PIECES} are "
+            "allowed here"
         )
-    low, edges, values = all_passes(terrain.pieces, terrain.z, terrain.cap, terrain.worst)
+    low, edges, values = all_passes(
+        free_space.pieces, free_space.z, free_space.cap, free_space.worst
+    )
     _, _, merges, lows = merge(low, edges, values, np.inf)
     ended = np.where(np.isfinite(low), np.inf, -np.inf)
     ended[merges[:, 1]] = lows[:, 0]

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
+from icage.cells.free_space import Configuration, FreeSpace, Search, search
 from icage.cells.kernels.tree import births
 from icage.cells.largest_sigma import largest_sigma_in
-from icage.cells.solver import Configuration, Search, Terrain, search
 from icage.errors import GeometryError
 from icage.geometry.exterior import Pieces
 from icage.hand import HandShape
@@ -72,7 +72,7 @@ def _slot_end(pieces: Pieces) -> IntArray:
     return pieces.slot_vertex[after]
 
 
-def cells_near(terrain: Terrain, at: Configuration, reach: float) -> IntArray:
+def cells_near(free_space: FreeSpace, at: Configuration, reach: float) -> IntArray:
     """All cells (k, 3) whose pieces come within ``reach`` of the fingers.
 
     Raises
@@ -81,10 +81,10 @@ def cells_near(terrain: Terrain, at: Configuration, reach: float) -> IntArray:
         They are more than ``_MAX_CELLS``: to leave some out could miss the way to close further.
     """
     near: list[IntArray] = []
-    for finger in terrain.fingers(at):
-        found = pieces_near(terrain.pieces, complex(finger), reach)
+    for finger in free_space.fingers(at):
+        found = pieces_near(free_space.pieces, complex(finger), reach)
         if not len(found):  # a configuration solved in doubles may sit this little inside a wall
-            found = pieces_near(terrain.pieces, complex(finger), 100.0 * reach)
+            found = pieces_near(free_space.pieces, complex(finger), 100.0 * reach)
         near.append(found)
     total = math.prod(len(n) for n in near)
     if total > _MAX_CELLS:
@@ -103,7 +103,7 @@ def turn_between(a: Configuration, b: Configuration) -> float:
 
 
 def find_target(
-    terrain: Terrain,
+    free_space: FreeSpace,
     wanted: Configuration,
     *,
     reach: float = TARGET_SHIFT,
@@ -113,24 +113,24 @@ def find_target(
 
     ``reach`` [diameter] bounds how far a finger may be from where it was asked to be.
     """
-    size = terrain.pieces.diameter
+    size = free_space.pieces.diameter
     cut = DEPTH_CUT * size
-    cells = cells_near(terrain, wanted, reach * size)
+    cells = cells_near(free_space, wanted, reach * size)
     if not len(cells):
         return None
-    value, at = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+    value, at = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
     best: Target | None = None
     near: list[Target] = []
     shut = False
     for k in np.argsort(value[:, 0], kind="stable"):
         if not 0.0 < value[k, 0] < np.inf:
             continue
-        ends = terrain.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), value[k, 1], value[k, 2])
+        ends = free_space.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), value[k, 1], value[k, 2])
         here = nearest_on(ends, wanted)
         if abs(here.w - wanted.w) <= reach * size < abs(here.d - wanted.d):
             # the same hand elsewhere: perhaps on a plateau that runs through where it should be
-            here = _slid_to(terrain, cells[k], here, wanted)
-        moved = shift_between(terrain.hand, wanted, here) / size
+            here = _slid_to(free_space, cells[k], here, wanted)
+        moved = shift_between(free_space.hand, wanted, here) / size
         turned = turn_between(wanted, here)
         if moved > reach or turned > turn:
             continue
@@ -138,14 +138,14 @@ def find_target(
         # hundreds of cells may meet in one point, as at the centre of an arc: it is looked at once
         if best is not None and moved >= best.moved - SAME_POINT:
             continue
-        if is_local_minimum(terrain, here, float(value[k, 0])):
-            ends = plateau_through(terrain, here, float(value[k, 0]))
-            around = search(terrain, cells[k], float(value[k, 0]), stop_above=value[k, 0] + cut)
+        if is_local_minimum(free_space, here, float(value[k, 0])):
+            ends = plateau_through(free_space, here, float(value[k, 0]))
+            around = search(free_space, cells[k], float(value[k, 0]), stop_above=value[k, 0] + cut)
             if ends is None and not _has_depth(around, float(value[k, 0])):
                 continue
             shut = _isolated(around, float(value[k, 0]))
             best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
-    return (_not_isolated(terrain, near) or best) if shut else best
+    return (_not_isolated(free_space, near) or best) if shut else best
 
 
 def _isolated(around: Search, sigma: float) -> bool:
@@ -153,25 +153,25 @@ def _isolated(around: Search, sigma: float) -> bool:
     return around.never_escapes and largest_sigma_in(around) / sigma - 1.0 < NOT_A_CAGE
 
 
-def _not_isolated(terrain: Terrain, near: list[Target]) -> Target | None:
+def _not_isolated(free_space: FreeSpace, near: list[Target]) -> Target | None:
     """The nearest minimum that can open, of the least points of cells.
 
     Where more fingers are held than are needed, rounding of the hand's shape may leave a point of
     free space behind, shut off from the minimum that it was and lower by a little.
     """
     for target in sorted(near, key=lambda t: (t.moved, t.sigma_0)):
-        top = target.sigma_0 + DEPTH_CUT * terrain.pieces.diameter
-        around = search(terrain, target.cell, target.sigma_0, stop_above=top)
+        top = target.sigma_0 + DEPTH_CUT * free_space.pieces.diameter
+        around = search(free_space, target.cell, target.sigma_0, stop_above=top)
         if not _isolated(around, target.sigma_0) and _has_depth(around, target.sigma_0):
-            return replace(target, plateau=plateau_through(terrain, target.at, target.sigma_0))
+            return replace(target, plateau=plateau_through(free_space, target.at, target.sigma_0))
     return None
 
 
 def _slid_to(
-    terrain: Terrain, cell: IntArray, here: Configuration, wanted: Configuration
+    free_space: FreeSpace, cell: IntArray, here: Configuration, wanted: Configuration
 ) -> Configuration:
     """The translation of ``here`` inside its cell that is nearest to the wanted configuration."""
-    corners = translations(terrain, cell, here.w)
+    corners = translations(free_space, cell, here.w)
     if not corners:
         return here
     far = max(corners, key=lambda d: abs(d - here.d))
@@ -189,11 +189,11 @@ def nearest_on(ends: tuple[Configuration, Configuration], wanted: Configuration)
     return Configuration(a.d + float(np.clip(t, 0.0, 1.0)) * side, a.w)
 
 
-def is_local_minimum(terrain: Terrain, here: Configuration, sigma: float) -> bool:
+def is_local_minimum(free_space: FreeSpace, here: Configuration, sigma: float) -> bool:
     """Whether no cell round the configuration goes deeper by more than the depth cut."""
-    size = terrain.pieces.diameter
-    cells = cells_near(terrain, here, SAME_POINT * size)
-    value, _ = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+    size = free_space.pieces.diameter
+    cells = cells_near(free_space, here, SAME_POINT * size)
+    value, _ = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
     return bool(value[:, 0].min() >= sigma - DEPTH_CUT * size)
 
 
@@ -204,28 +204,32 @@ def _has_depth(around: Search, sigma: float) -> bool:
     """
     if around.escaped:
         return False
-    terrain = around.terrain
-    value, _ = births(terrain.pieces, terrain.z, around.nodes, terrain.cap, terrain.worst)
-    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * terrain.pieces.diameter)
+    free_space = around.free_space
+    value, _ = births(
+        free_space.pieces, free_space.z, around.nodes, free_space.cap, free_space.worst
+    )
+    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * free_space.pieces.diameter)
 
 
 def plateau_through(
-    terrain: Terrain, here: Configuration, sigma: float
+    free_space: FreeSpace, here: Configuration, sigma: float
 ) -> tuple[Configuration, Configuration] | None:
     """Ends of the translations at constant sigma through a minimum (opposing parallel edges).
 
     The hand keeps w, so the set is a segment of d; it is followed from cell to cell.
     """
-    size = terrain.pieces.diameter
+    size = free_space.pieces.diameter
     ends = [here, here]
     for side in range(2):
-        for _ in range(10 * terrain.pieces.total):
+        for _ in range(10 * free_space.pieces.total):
             best = ends[side]
-            cells = cells_near(terrain, best, SAME_POINT * size)
-            low, _ = births(terrain.pieces, terrain.z, cells, terrain.cap, terrain.worst)
+            cells = cells_near(free_space, best, SAME_POINT * size)
+            low, _ = births(
+                free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst
+            )
             # beyond the end of a plateau the hand may close further: not a part of it
             for cell in cells[np.abs(low[:, 0] - sigma) <= DEPTH_CUT * size]:
-                for d in translations(terrain, cell, here.w):
+                for d in translations(free_space, cell, here.w):
                     if _further(here, ends[1 - side], best, d, PLATEAU * size):
                         best = Configuration(d, here.w)
             if best is ends[side]:
@@ -236,9 +240,9 @@ def plateau_through(
     return ends[0], ends[1]
 
 
-def translations(terrain: Terrain, cell: IntArray, w: complex) -> list[complex]:
+def translations(free_space: FreeSpace, cell: IntArray, w: complex) -> list[complex]:
     """Corners d of the convex set of hands in a cell that have this very w, to SLIDE_GIVE."""
-    pieces, z = terrain.pieces, terrain.hand.z
+    pieces, z = free_space.pieces, free_space.hand.z
     give = SLIDE_GIVE * pieces.diameter
     corners: list[complex] = []
     for finger, k in enumerate(cell.tolist()):
@@ -276,7 +280,7 @@ def _further(
     return ((d - here.d) * np.conj(other.d - here.d)).real <= 0.0
 
 
-def contacts_as_configuration(terrain: Terrain, contacts: FloatArray) -> Configuration:
+def contacts_as_configuration(free_space: FreeSpace, contacts: FloatArray) -> Configuration:
     """The configuration whose fingers 1 and 2 are at the first two contacts."""
-    d = complex(*(contacts[0] - terrain.origin))
+    d = complex(*(contacts[0] - free_space.origin))
     return Configuration(d, complex(*(contacts[1] - contacts[0])))

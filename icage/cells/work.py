@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from icage.cells.solver import Search, Tree
+from icage.cells.free_space import Search, Tree
 from icage.errors import MethodError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def work_of(cage: Cage) -> CageWork | None:
     MethodError:
         The cage was planned by the contact space, which answers no questions about placements.
     """
-    if cage.work is None and cage.verdict != "not_a_cage":
+    if cage.work is None and cage.status != "not_a_cage":
         raise MethodError(
             "this cage was planned by the contact space, which answers no queries and draws no "
             "regions; plan it by the cells (method='cells') and ask that cage"

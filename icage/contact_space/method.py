@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray
-from icage.cage import Cage, not_a_cage
+from icage.cage import Cage, CageStatus, not_a_cage
 from icage.contact_space.basins import first_level, grasps_and_punctures, meetings
 from icage.contact_space.exploration import Exploration, Plane, explore_from
 from icage.contact_space.kernels.explore import TUNNEL
@@ -18,11 +18,11 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
 
-__all__ = ["CONTACT_SPACE", "ContactLook", "ContactSpace"]
+__all__ = ["CONTACT_SPACE", "ContactLocalCage", "ContactSpace"]
 
 
 @dataclass(frozen=True, slots=True)
-class ContactLook:
+class ContactLocalCage:
     """A target on one polygon and the search from it. See ``icage.method.Look``."""
 
     target: ContactTarget
@@ -54,7 +54,7 @@ class ContactLook:
             hand=hand,
             finger_radius=radius,
             contacts=grasps[0].contacts,
-            verdict="cage" if found.escaped else "never_escapes",
+            status=CageStatus.CAGE if found.escaped else CageStatus.NEVER_ESCAPES,
             why=None,
             sigma_0=sigma_0,
             sigma_first=punctures[0].sigma if punctures else None,
@@ -130,9 +130,9 @@ class ContactSpace:
             return not_a_cage(outline, hand, contacts, why, radius)
         return self._explored(plane, target).cage(contacts, outline, radius)
 
-    def look(
+    def local_cage(
         self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> ContactLook | None:
+    ) -> ContactLocalCage | None:
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=reach, turn=turn)
@@ -140,9 +140,9 @@ class ContactSpace:
             return None
         return self._explored(plane, target)
 
-    def _explored(self, plane: Plane, target: ContactTarget) -> ContactLook:
+    def _explored(self, plane: Plane, target: ContactTarget) -> ContactLocalCage:
         found = explore_from(plane, target.region, tunnels=self.tunnels, both_ways=self.both_ways)
-        return ContactLook(target, found)
+        return ContactLocalCage(target, found)
 
 
 CONTACT_SPACE = ContactSpace()

@@ -22,7 +22,7 @@ from icage.discs.true_curve import refine
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
-from icage.method import Look, Method
+from icage.method import LocalCage, Method
 from icage.outline import Outline
 from icage.tolerance import (
     LEVEL,
@@ -41,40 +41,42 @@ FINER = (64, 128, 256)
 
 
 @dataclass(frozen=True, slots=True)
-class ArcLook:
+class ArcLocalCage:
     """One polygon that stands in for the true curve, and what was found round it."""
 
     segments: int
     inner: bool
-    look: Look
+    local_cage: LocalCage
     sigma_max: float
     sigma_first: float
     sagitta: float
 
 
 def plan_discs(
-    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, engine: Method
+    outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, method: Method
 ) -> Cage:
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     check_disc_contacts(outline, radius, contacts)
     true = _true_target(outline, hand, contacts, radius)
-    looks, closed = _looks(outline, hand, true, radius, engine)
-    lower = [look for look in looks if look.inner]
+    local_cages, closed = _local_cages(outline, hand, true, radius, method)
+    lower = [local_cage for local_cage in local_cages if local_cage.inner]
     if not lower:
         inner = offsets(outline, radius, 32).inner
-        return replace(engine.cage(inner, hand, contacts, outline, radius), contacts=contacts)
+        return replace(method.cage(inner, hand, contacts, outline, radius), contacts=contacts)
     # of equal levels the finest polygon, whatever the last digit says
-    top = max(look.sigma_max for look in lower) * (1.0 - 1e-12)
-    basis = max((k for k in lower if k.sigma_max >= top), key=lambda look: look.segments)
-    cage = basis.look.cage(contacts, outline, radius)
-    if cage.verdict == "not_a_cage":
+    top = max(local_cage.sigma_max for local_cage in lower) * (1.0 - 1e-12)
+    basis = max(
+        (k for k in lower if k.sigma_max >= top), key=lambda local_cage: local_cage.segments
+    )
+    cage = basis.local_cage.cage(contacts, outline, radius)
+    if cage.status == "not_a_cage":
         return replace(cage, contacts=contacts)
     sigma_0 = float(np.hypot(*(true[1] - true[0])))
     if basis.sigma_max / sigma_0 - 1.0 < NOT_A_CAGE:
-        most = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
+        most = min((k.sigma_max for k in local_cages if not k.inner), default=np.inf)
         why = f"too shallow to tell: sigma_max / sigma_0 is at most {most / sigma_0:.9g}"
         return not_a_cage(outline, hand, contacts, why, radius)
-    return _bracketed(cage, looks, basis, true, contacts, closed, engine.complete)
+    return _bracketed(cage, local_cages, basis, true, contacts, closed, method.complete)
 
 
 def _true_target(
@@ -90,53 +92,57 @@ def _true_target(
     return solved if near else contacts
 
 
-def _looks(
-    outline: Outline, hand: HandShape, true: FloatArray, radius: float, engine: Method
-) -> tuple[list[ArcLook], int]:
+def _local_cages(
+    outline: Outline, hand: HandShape, true: FloatArray, radius: float, method: Method
+) -> tuple[list[ArcLocalCage], int]:
     """Inner and outer polygons, refined until sigma_max is bracketed."""
     through = directions_on_arcs(outline, radius, true)
-    looks: list[ArcLook] = []
+    local_cages: list[ArcLocalCage] = []
     closed = 0
     for segments in (*RESOLUTIONS, *FINER):
-        if segments in FINER and _narrow(looks):
+        if segments in FINER and _narrow(local_cages):
             break
         grown = offsets(outline, radius, segments, through)
         closed = grown.closed_pockets
         for inner in (True, False):
-            look = _look(grown, hand, true, segments, inner, radius if through else 0.0, engine)
-            if look is not None:
-                looks.append(look)
-        if not looks:
+            local_cage = _local_cage(
+                grown, hand, true, segments, inner, radius if through else 0.0, method
+            )
+            if local_cage is not None:
+                local_cages.append(local_cage)
+        if not local_cages:
             break
-    return looks, closed
+    return local_cages, closed
 
 
-def _narrow(looks: list[ArcLook]) -> bool:
-    low = max((k.sigma_max for k in looks if k.inner), default=0.0)
-    high = min((k.sigma_max for k in looks if not k.inner), default=np.inf)
+def _narrow(local_cages: list[ArcLocalCage]) -> bool:
+    low = max((k.sigma_max for k in local_cages if k.inner), default=0.0)
+    high = min((k.sigma_max for k in local_cages if not k.inner), default=np.inf)
     return low > 0.0 and (low == high or high / low - 1.0 < SIGMA_MAX_GAP)
 
 
-def _look(
+def _local_cage(
     grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float,
-    engine: Method,
-) -> ArcLook | None:  # fmt: skip
+    method: Method,
+) -> ArcLocalCage | None:  # fmt: skip
     """The search on one polygon; ``arc`` is the radius of an arc that carries a contact, or 0."""
     polygon = grown.inner if inner else grown.outer
     # on chords a contact of an arc may rest anywhere on its own chord
     chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
-    look = engine.look(
+    local_cage = method.local_cage(
         polygon, hand, true, max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
     )
-    if look is None:
+    if local_cage is None:
         return None
-    return ArcLook(segments, inner, look, look.sigma_max, look.sigma_first, grown.sagitta)
+    return ArcLocalCage(
+        segments, inner, local_cage, local_cage.sigma_max, local_cage.sigma_first, grown.sagitta
+    )
 
 
 def _bracketed(
     cage: Cage,
-    looks: list[ArcLook],
-    basis: ArcLook,
+    local_cages: list[ArcLocalCage],
+    basis: ArcLocalCage,
     true: FloatArray,
     contacts: FloatArray,
     closed: int,
@@ -144,8 +150,8 @@ def _bracketed(
 ) -> Cage:
     """The cage of the basis polygon with the brackets and the true grasps put in."""
     low = basis.sigma_max
-    outer = [look for look in looks if not look.inner]
-    best_outer = min(outer, key=lambda look: look.sigma_max) if outer else None
+    outer = [local_cage for local_cage in local_cages if not local_cage.inner]
+    best_outer = min(outer, key=lambda local_cage: local_cage.sigma_max) if outer else None
     high = best_outer.sigma_max if best_outer is not None else np.inf
     if low > high * (1.0 + 1e-9):
         if complete:
@@ -154,15 +160,15 @@ def _bracketed(
     high = max(low, high)
     # on chords the target itself lies a little below the true one, and so may its neighbours
     sigma_0 = float(np.hypot(*(true[1] - true[0])))
-    firsts = [max(sigma_0, look.sigma_first) for look in looks]
+    firsts = [max(sigma_0, local_cage.sigma_first) for local_cage in local_cages]
     first, first_upper = min(*firsts, low), max(firsts)
-    if all(look.sigma_first == look.sigma_max for look in looks):
+    if all(local_cage.sigma_first == local_cage.sigma_max for local_cage in local_cages):
         # nothing comes before the escape anywhere: then its bracket, which is narrower, holds
         first, first_upper = low, high
     converged = first == first_upper or first_upper / first - 1.0 <= SIGMA_FIRST_SPREAD
     grasps = _on_true_curve(cage, true)
     path, gap = cage.escape_path, cage.min_finger_gap
-    way = best_outer.look.escape_path() if best_outer is not None else None
+    way = best_outer.local_cage.escape_path() if best_outer is not None else None
     if way is not None:
         path = np.vstack([grasps[0].placement.as_array(), way[0]])
         gap = least_gap_on(cage.hand, path)
@@ -180,7 +186,7 @@ def _bracketed(
         grasps=grasps,
         escape_path=path,
         min_finger_gap=gap,
-        warnings=(*cage.warnings, *_warnings(looks, low, high, converged, closed)),
+        warnings=(*cage.warnings, *_warnings(local_cages, low, high, converged, closed)),
         work=None if cage.work is None else replace(cage.work, sagitta=basis.sagitta),
     )
 
@@ -222,7 +228,7 @@ def _punctures(cage: Cage, first: float) -> tuple[Puncture, ...]:
 
 
 def _warnings(
-    looks: list[ArcLook], low: float, high: float, converged: bool, closed: int
+    local_cages: list[ArcLocalCage], low: float, high: float, converged: bool, closed: int
 ) -> tuple[str, ...]:
     told: list[str] = []
     if closed:
@@ -231,7 +237,7 @@ def _warnings(
         told.append(f"sigma_max is bracketed by {low:.9g} and {high:.9g} only")
     if not converged:
         spread = ", ".join(
-            f"{k.segments}{'i' if k.inner else 'o'}: {k.sigma_first:.6g}" for k in looks
+            f"{k.segments}{'i' if k.inner else 'o'}: {k.sigma_first:.6g}" for k in local_cages
         )
         told.append(f"sigma_first depends on the arc resolution ({spread}); the smallest is used")
     return tuple(told)

@@ -76,7 +76,7 @@ def _regions(cage: Cage) -> tuple[list[shapely.MultiPolygon], list[shapely.Multi
 
 def _caption(cage: Cage) -> Iterator[str]:
     yield repr(cage)[1:-1]
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         yield cage.why or ""
         return
     if cage.work is not None:

@@ -22,7 +22,7 @@ def plan_document(
         "diameter": cage.outline.diameter,
         "finger_radius": cage.finger_radius,
         "hand": {"phi_deg": cage.hand.phi_deg, "unit_fingers": cage.hand.unit_fingers},
-        "verdict": cage.verdict,
+        "verdict": cage.status,
         **({"why": cage.why} if cage.why is not None else {}),
         "contacts": cage.contacts,
         "adjusted_by": cage.adjusted_by,
@@ -108,9 +108,9 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
         f"{name}: {len(cage.outline)} vertices, diameter {cage.outline.diameter:.6g} {unit}, "
         f"hand (phi_1, phi_2) = ({phi_1:.4g}, {phi_2:.4g}) deg, {_fingers(cage, unit)}"
     )
-    yield f"verdict      {cage.verdict.replace('_', ' ')}{f': {cage.why}' if cage.why else ''}"
+    yield f"verdict      {cage.status.replace('_', ' ')}{f': {cage.why}' if cage.why else ''}"
     yield f"sigma_0      {cage.sigma_0:.9g} {unit}"
-    if cage.verdict != "not_a_cage":
+    if cage.status != "not_a_cage":
         yield _level("sigma_first", cage.sigma_first, cage, "closing ends only in the target")
         yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")
         for puncture in cage.punctures:

@@ -11,9 +11,9 @@ from itertools import takewhile
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
+from icage.cells.free_space import Configuration, FreeSpace
 from icage.cells.kernels.search import TIE
 from icage.cells.kernels.tree import lowest_cells
-from icage.cells.solver import Configuration, Terrain
 from icage.cells.target import is_local_minimum, plateau_through
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
@@ -40,8 +40,8 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
     3
     """
     frame = NearFrame.of(outline)
-    terrain = Terrain.around(frame.outline_into(outline), hand)
-    pieces = terrain.pieces
+    free_space = FreeSpace.around(frame.outline_into(outline), hand)
+    pieces = free_space.pieces
     if pieces.total > MOST_PIECES:
         raise InputError(
             f"the outline needs {pieces.total} pieces; up to {MOST_PIECES} are allowed here: "
@@ -49,35 +49,40 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
         )
     size = pieces.diameter
     cells, low, where = lowest_cells(
-        pieces, terrain.z, terrain.cap, terrain.worst, TIE * size, DEPTH_CUT * size
+        pieces, free_space.z, free_space.cap, free_space.worst, TIE * size, DEPTH_CUT * size
     )
     found: list[tuple[float, Configuration]] = []
     for k in np.argsort(low[:, 0], kind="stable"):
-        here = _least_point(terrain, cells[k], low[k], where[k])
+        here = _least_point(free_space, cells[k], low[k], where[k])
         sigma = float(low[k, 0])
-        if _known(terrain, here, sigma, found):
+        if _known(free_space, here, sigma, found):
             continue
-        if is_local_minimum(terrain, here, sigma) and not plateau_through(terrain, here, sigma):
+        if is_local_minimum(free_space, here, sigma) and not plateau_through(
+            free_space, here, sigma
+        ):
             found.append((sigma, here))
-    return [frame.back(terrain.contacts(here)) for _, here in found]
+    return [frame.back(free_space.contacts(here)) for _, here in found]
 
 
 def _least_point(
-    terrain: Terrain, cell: IntArray, low: FloatArray, where: IntArray
+    free_space: FreeSpace, cell: IntArray, low: FloatArray, where: IntArray
 ) -> Configuration:
-    a, b = terrain.on_edge(cell, int(where[0]), int(where[1]), low[1], low[2])
+    a, b = free_space.on_edge(cell, int(where[0]), int(where[1]), low[1], low[2])
     return Configuration(0.5 * (a.d + b.d), a.w)
 
 
 def _known(
-    terrain: Terrain, here: Configuration, sigma: float, found: list[tuple[float, Configuration]]
+    free_space: FreeSpace,
+    here: Configuration,
+    sigma: float,
+    found: list[tuple[float, Configuration]],
 ) -> bool:
     """Whether a configuration is among those found, which come in ascending order of sigma."""
-    least = sigma - SAME_POINT * terrain.pieces.diameter
+    least = sigma - SAME_POINT * free_space.pieces.diameter
     last = takewhile(lambda pair: pair[0] >= least, reversed(found))
-    return any(_same(terrain, here, known) for _, known in last)
+    return any(_same(free_space, here, known) for _, known in last)
 
 
-def _same(terrain: Terrain, a: Configuration, b: Configuration) -> bool:
-    shift = np.abs((a.d - b.d) + (a.w - b.w) * terrain.hand.z).max()
-    return bool(shift <= 1e-7 * terrain.pieces.diameter)
+def _same(free_space: FreeSpace, a: Configuration, b: Configuration) -> bool:
+    shift = np.abs((a.d - b.d) + (a.w - b.w) * free_space.hand.z).max()
+    return bool(shift <= 1e-7 * free_space.pieces.diameter)

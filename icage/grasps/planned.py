@@ -120,4 +120,4 @@ def _planned(
         return "out of reach of fingers of this radius"
     except GeometryError:
         return "it could not be planned (our fault)"
-    return cage if cage.verdict != "not_a_cage" else "no cage"
+    return cage if cage.status != "not_a_cage" else "no cage"

@@ -18,8 +18,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
+from icage.cells.free_space import FreeSpace, search
 from icage.cells.largest_sigma import largest_sigma_in
-from icage.cells.solver import Terrain, search
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.discs.offsets import offsets
 from icage.errors import GraspError, HandError, InputError
@@ -115,7 +115,7 @@ _Job: TypeAlias = tuple[IntArray, FloatArray]
 _Found: TypeAlias = tuple[Candidate | None, FloatArray]
 
 
-class Bench:
+class GraspEvaluator:
     """One outline, cut into pieces once for all hands that are tried on it."""
 
     def __init__(self, outline: Outline, radius: float, wanted: Wanted) -> None:
@@ -147,11 +147,11 @@ class Bench:
             return None
         if float(np.hypot(*(contacts[1] - contacts[0]))) * shortest_side(hand) < self.apart:
             return None
-        terrain = Terrain.of_pieces(self.outline, hand, self._pieces, self._origin)
-        target = find_target(terrain, contacts_as_configuration(terrain, contacts))
+        free_space = FreeSpace.of_pieces(self.outline, hand, self._pieces, self._origin)
+        target = find_target(free_space, contacts_as_configuration(free_space, contacts))
         if target is None or target.plateau is not None:
             return None
-        found = search(terrain, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
+        found = search(free_space, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
         if found.gave_up:
             self.broken_off += 1
             return None
@@ -218,12 +218,12 @@ class Bench:
         return bool((self.features.kind[triple] == EDGE).any())
 
 
-_bench: Bench | None = None
+_evaluator: GraspEvaluator | None = None
 
 
 def _start_worker(outline: FloatArray, radius: float, wanted: Wanted) -> None:
-    global _bench
-    _bench = Bench(Outline(outline), radius, wanted)
+    global _evaluator
+    _evaluator = GraspEvaluator(Outline(outline), radius, wanted)
 
 
 _Done: TypeAlias = tuple[list[_Found], int]
@@ -231,26 +231,26 @@ _Done: TypeAlias = tuple[list[_Found], int]
 
 
 def _try_chunk(jobs: list[_Job]) -> _Done:
-    assert _bench is not None
-    before = _bench.broken_off
-    found = [(_bench.at(triple, p), p) for triple, p in jobs]
-    return found, _bench.broken_off - before
+    assert _evaluator is not None
+    before = _evaluator.broken_off
+    found = [(_evaluator.at(triple, p), p) for triple, p in jobs]
+    return found, _evaluator.broken_off - before
 
 
 def _improve_chunk(jobs: list[_Job]) -> _Done:
-    assert _bench is not None
-    before = _bench.broken_off
-    found = [improved(_bench, triple, p) for triple, p in jobs]
-    return found, _bench.broken_off - before
+    assert _evaluator is not None
+    before = _evaluator.broken_off
+    found = [improved(_evaluator, triple, p) for triple, p in jobs]
+    return found, _evaluator.broken_off - before
 
 
-def improved(bench: Bench, triple: IntArray, start: FloatArray) -> _Found:
+def improved(evaluator: GraspEvaluator, triple: IntArray, start: FloatArray) -> _Found:
     """Move the contacts of a grasp by moving P: Nelder-Mead on the score, bounded steps."""
-    best: list[_Found] = [(bench.at(triple, start), start)]
-    size = bench.outline.diameter
+    best: list[_Found] = [(evaluator.at(triple, start), start)]
+    size = evaluator.outline.diameter
 
     def loss(p: FloatArray) -> float:
-        found = bench.at(triple, p)
+        found = evaluator.at(triple, p)
         if found is None:
             return 1.0
         if best[0][0] is None or found.score > best[0][0].score:
@@ -304,15 +304,15 @@ def ranked_grasps(
     """
     frame = NearFrame.of(outline)
     outline = frame.outline_into(outline)
-    bench = Bench(outline, finger_radius, wanted)
-    with _Workers(outline, finger_radius, wanted, workers, bench) as pool:
-        found = pool.run(_try_chunk, bench.jobs(rng), "every triple", progress)
+    evaluator = GraspEvaluator(outline, finger_radius, wanted)
+    with _Workers(outline, finger_radius, wanted, workers, evaluator) as pool:
+        found = pool.run(_try_chunk, evaluator.jobs(rng), "every triple", progress)
         ranked = _ranked(found)
         more: list[_Job] = []
         for candidate, p in ranked[:_PROMISING]:
             triple = np.array(candidate.triple)
-            if bench.movable(triple):
-                more += [(triple, q) for q in _around(p, bench, rng)]
+            if evaluator.movable(triple):
+                more += [(triple, q) for q in _around(p, evaluator, rng)]
         ranked = _ranked(found + pool.run(_try_chunk, more, "promising ones", progress))
         seeds: list[_Job] = [
             (np.array(c.triple), p) for c, p in _one_per_triple(ranked)[:_IMPROVED]
@@ -323,7 +323,7 @@ def ranked_grasps(
         raise GraspError("no immobilizing three-finger grasp was found on this outline")
     return Ranking(
         tuple(replace(c, contacts=frame.back(c.contacts)) for c in best),
-        bench.triples, bench.triples_left_out, pool.broken_off,
+        evaluator.triples, evaluator.triples_left_out, pool.broken_off,
     )  # fmt: skip
 
 
@@ -353,9 +353,9 @@ def best_grasps(
     return kept
 
 
-def _around(p: FloatArray, bench: Bench, rng: np.random.Generator) -> FloatArray:
+def _around(p: FloatArray, evaluator: GraspEvaluator, rng: np.random.Generator) -> FloatArray:
     """Points of concurrency near P, at several scales."""
-    scale = bench.outline.diameter * np.array([0.02, 0.05, 0.1, 0.2])
+    scale = evaluator.outline.diameter * np.array([0.02, 0.05, 0.1, 0.2])
     size = np.resize(scale, _MORE_POINTS)
     return p + size[:, None] * rng.standard_normal((_MORE_POINTS, 2))
 
@@ -388,10 +388,15 @@ class _Workers:
     """Chunks of jobs in order, in this process or in several."""
 
     def __init__(
-        self, outline: Outline, radius: float, wanted: Wanted, workers: int, bench: Bench
+        self,
+        outline: Outline,
+        radius: float,
+        wanted: Wanted,
+        workers: int,
+        evaluator: GraspEvaluator,
     ) -> None:
-        global _bench
-        _bench = bench
+        global _evaluator
+        _evaluator = evaluator
         self.broken_off = 0
         self._pool: ProcessPoolExecutor | None = None
         if workers > 1:

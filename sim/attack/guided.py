@@ -87,7 +87,7 @@ def object_path(scene: Scene, hand_path: FloatArray) -> FloatArray:
     rows = np.asarray(hand_path, dtype=np.float64)
     d = rows[:, 0] + 1j * rows[:, 1]
     w = rows[:, 3] * np.exp(1j * rows[:, 2])
-    size = scene.thing.unit
+    size = scene.object.diameter
     parts: list[FloatArray] = []
     for k in range(len(rows) - 1):
         side = (abs(d[k + 1] - d[k]) + abs(w[k + 1] - w[k])) / size
@@ -162,7 +162,7 @@ class GuidedDriver:
         lead: Callable[..., None] = _lead
         lead(
             ids, qpos, self.path, dt, self._pace, pull.lag, pull.rate * damping,
-            pull.speed * damping, self.scene.thing.gyration_squared, self._at, self._waited,
+            pull.speed * damping, self.scene.object.gyration_squared, self._at, self._waited,
             self._back_to, self._slow_to, pull.slow, goal, wrench,
         )  # fmt: skip
         piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)

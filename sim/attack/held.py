@@ -97,7 +97,7 @@ class Attacks:
 
 
 @dataclass(frozen=True, slots=True)
-class Lookout:
+class AttackMonitor:
     """The running record of N attacks on one scene, a row each; updated in place.
 
     Attributes
@@ -116,7 +116,7 @@ class Lookout:
     _seen: FloatArray
 
     @classmethod
-    def over(cls, scene: Scene, openings: FloatArray) -> Lookout:
+    def over(cls, scene: Scene, openings: FloatArray) -> AttackMonitor:
         """Start watching attacks at openings (N,) [diameter]."""
         count = len(openings)
         return cls(
@@ -124,7 +124,7 @@ class Lookout:
             np.array(openings),
             steps=np.zeros(count, dtype=np.int64),
             ending=np.full(count, RUNNING, dtype=np.int64),
-            _hull=hull_of(scene.thing.vertices),
+            _hull=hull_of(scene.object.vertices),
             _seen=np.zeros((count, 2)),
         )
 
@@ -137,9 +137,9 @@ class Lookout:
             qpos,
             qvel,
             self.openings,
-            scene.thing.vertices,
+            scene.object.vertices,
             self._hull,
-            scene.finger_radius / scene.thing.unit,
+            scene.finger_radius / scene.object.diameter,
             kinematics.directions,
             kinematics.tendon_coefficients,
             SHUT / kinematics.longest_side,
@@ -181,7 +181,7 @@ def attack(
     number of threads (0: one per core).
     """
     count = len(starts)
-    lookout = Lookout.over(scene, openings)
+    lookout = AttackMonitor.over(scene, openings)
     ending = lookout.ending
     batch = held_batch(model, starts, openings, threads)
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")

@@ -106,7 +106,7 @@ def _shape(scene: Scene, opening: float) -> tuple[FloatArray, FloatArray, float]
     """Outline, fingers (3, 2) in P and radius, all in diameters."""
     kinematics = scene.kinematics
     fingers = kinematics.directions * (opening * kinematics.lengths)[:, None]
-    return scene.thing.vertices, fingers, scene.finger_radius / scene.thing.unit
+    return scene.object.vertices, fingers, scene.finger_radius / scene.object.diameter
 
 
 @njit(cache=True)

@@ -57,9 +57,9 @@ class View:
         cls, scene: Scene, qpos: FloatArray, width: int, height: int, margin: float = 0.06
     ) -> View:
         """The smallest window that holds the object and the fingers in all frames (F, 6)."""
-        radius = scene.finger_radius / scene.thing.unit
+        radius = scene.finger_radius / scene.object.diameter
         cos, sin = np.cos(qpos[:, 5:6]), np.sin(qpos[:, 5:6])
-        x, y = scene.thing.vertices.T
+        x, y = scene.object.vertices.T
         object_x = cos * x - sin * y + qpos[:, 3:4]
         object_y = sin * x + cos * y + qpos[:, 4:5]
         finger_x = qpos[:, :3] * scene.kinematics.directions[:, 0]
@@ -104,7 +104,7 @@ def dressed(scene: Scene, view: View, decor: Decor) -> MjSpec:
     body = spec.body("object")
     for geom in list(body.geoms):
         geom.group = _HIDDEN_GROUP
-    _add_flat(spec, body, "object_look", _polygon(scene.thing.vertices), -0.045, 0.045)
+    _add_flat(spec, body, "object_look", _polygon(scene.object.vertices), -0.045, 0.045)
     spec.geom("object_look").rgba = list(OBJECT_COLOUR)
     for number, (finger, geometry) in enumerate(decor.regions):
         _add_region(spec, body, scene, number, finger, geometry)
@@ -132,7 +132,7 @@ def _add_region(
 ) -> None:
     """One flat translucent mesh per part, painted on the floor: higher up it would cast shadows."""
     normal = shapely.transform(
-        geometry, lambda points: (points - scene.thing.centre) / scene.thing.unit
+        geometry, lambda points: (points - scene.object.centre) / scene.object.diameter
     )
     for part_number, part in enumerate(_parts(shapely.simplify(normal, _FINEST))):
         name = f"region_{number}_{part_number}_look"
@@ -145,7 +145,7 @@ def _add_target(spec: MjSpec, scene: Scene, target: Placement) -> None:
     """A line round the place of the object in the hand once it is grasped; fixed in the world."""
     x, y, turn = scene.start_positions(target.as_array())[0, 3:].tolist()
     corner = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    vertices = scene.thing.vertices @ corner.T + [x, y]
+    vertices = scene.object.vertices @ corner.T + [x, y]
     line = shapely.LinearRing(vertices).buffer(0.004, join_style="mitre")
     for number, part in enumerate(_parts(line)):
         name = f"target_{number}_look"

@@ -6,7 +6,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.errors import InputError
-from sim.attack.held import DIVERGED, RUNNING, Attacks, Lookout
+from sim.attack.held import DIVERGED, RUNNING, AttackMonitor, Attacks
 from sim.attack.random import RandomDriver, RandomPull
 from sim.chipmunk.world import SecondConfig, World
 from sim.world.scene import Scene
@@ -36,7 +36,7 @@ def random_attack_second(
     if not (np.isfinite(openings).all() and (openings > 0.0).all()):
         raise InputError("an opening to hold the hand at must be a finite number above 0")
     driver = RandomDriver(scene, openings, rng, pull or RandomPull())
-    lookout = Lookout.over(scene, openings)
+    lookout = AttackMonitor.over(scene, openings)
     end = np.array(starts, dtype=np.float64)
     for i in range(len(end)):
         _attack(lookout, driver, i, end, config or SecondConfig())
@@ -44,7 +44,7 @@ def random_attack_second(
 
 
 def _attack(
-    lookout: Lookout, driver: RandomDriver, i: int, qpos: FloatArray, config: SecondConfig
+    lookout: AttackMonitor, driver: RandomDriver, i: int, qpos: FloatArray, config: SecondConfig
 ) -> None:
     """Run attack i from qpos[i], which moves; what is seen of it goes into row i of the lookout."""
     if not np.isfinite(qpos[i]).all():

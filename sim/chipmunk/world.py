@@ -78,7 +78,7 @@ class World:
     opening: float = math.inf
     space: Space = field(init=False, repr=False)
     arms: list[Body] = field(init=False, repr=False)
-    thing: Body = field(init=False, repr=False)
+    body: Body = field(init=False, repr=False)
     _reach: list[float] = field(init=False, repr=False)
     _shares: list[float] = field(init=False, repr=False)
     _delay: float = field(init=False, repr=False)
@@ -96,10 +96,10 @@ class World:
         put(self, "_step", config.time_step)
         put(self, "space", _space(engine, self.scene, self.config))
         put(self, "arms", [_arm(engine, self.space, self.scene, k) for k in range(3)])
-        put(self, "thing", _thing(engine, self.space, self.scene))
+        put(self, "body", _body(engine, self.space, self.scene))
         _link(engine, self.space, self.arms, self.opening)
         x, y, turn = self.start[3:].tolist()
-        self.thing.position, self.thing.angle = (x, y), turn
+        self.body.position, self.body.angle = (x, y), turn
         self._turn_to(math.asin(float(self.scene.sigma(self.start[None])[0]) / ARM), 0.0)
 
     def step(
@@ -115,8 +115,8 @@ class World:
         for arm, share in zip(self.arms, self._shares, strict=True):
             arm.torque = pull * share
         if any(wrench):
-            self.thing.force = (wrench[0] / self._delay, wrench[1] / self._delay)
-            self.thing.torque = wrench[2] / self._delay
+            self.body.force = (wrench[0] / self._delay, wrench[1] / self._delay)
+            self.body.torque = wrench[2] / self._delay
         self.space.step(self._step)
         after = self.positions()
         angle = speed = 0.0
@@ -129,7 +129,7 @@ class World:
     def positions(self) -> list[float]:
         """The qpos (6,), as in MuJoCo's scene."""
         slides = [r * math.sin(arm.angle) for r, arm in zip(self._reach, self.arms, strict=True)]
-        return [*slides, *self.thing.position, self.thing.angle]
+        return [*slides, *self.body.position, self.body.angle]
 
     def press(self) -> tuple[FloatArray, int]:
         """Forces on the fingers in the last step, (3,) [drive_force], and how many contacts."""
@@ -171,19 +171,19 @@ def _arm(engine: Any, space: Space, scene: Scene, k: int) -> Body:
     x, y = kinematics.directions[k].tolist()
     arm = engine.Body(_UNMOVED, mass * reach * reach)
     arm.position = (-reach * y, reach * x)
-    radius = scene.finger_radius / scene.thing.unit + TOUCHING
+    radius = scene.finger_radius / scene.object.diameter + TOUCHING
     tip = engine.Circle(arm, radius, (reach * y, -reach * x))
     tip.filter = engine.ShapeFilter(group=_FINGERS)
     space.add(arm, tip)
     return arm
 
 
-def _thing(engine: Any, space: Space, scene: Scene) -> Body:
-    thing = engine.Body(1.0, scene.thing.gyration_squared)
-    space.add(thing)
-    for piece in scene.thing.pieces:
-        space.add(engine.Poly(thing, [tuple(corner) for corner in piece.tolist()]))
-    return thing
+def _body(engine: Any, space: Space, scene: Scene) -> Body:
+    body = engine.Body(1.0, scene.object.gyration_squared)
+    space.add(body)
+    for piece in scene.object.pieces:
+        space.add(engine.Poly(body, [tuple(corner) for corner in piece.tolist()]))
+    return body
 
 
 def _link(engine: Any, space: Space, arms: list[Body], opening: float) -> None:

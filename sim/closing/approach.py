@@ -35,8 +35,8 @@ def first_touch(scene: Scene, qpos: FloatArray) -> FloatArray:
 
     The start must be clear of the object; rows that are not get their own sigma back.
     """
-    vertices = scene.thing.vertices
-    radius = scene.finger_radius / scene.thing.unit
+    vertices = scene.object.vertices
+    radius = scene.finger_radius / scene.object.diameter
     sigma = scene.sigma(qpos)
     cos, sin = np.cos(qpos[:, 5]), np.sin(qpos[:, 5])
     end_x, end_y = _turned_back(cos, sin, -qpos[:, 3], -qpos[:, 4])

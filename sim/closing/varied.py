@@ -103,7 +103,7 @@ def settings(scene: Scene, worlds: Worlds) -> Iterator[Setting]:
         yield Setting("geom_solref", (touching, 0), soft)
     if differs("table_friction"):
         force = worlds.table_friction * config.drive_force
-        arm = mean_distance(scene.thing.vertices)
+        arm = mean_distance(scene.object.vertices)
         loss = np.column_stack([force, force, force * arm])
         yield Setting("dof_frictionloss", (_OBJECT,), loss)
         # as stiff as a contact: with the engine's usual time constant what sticks creeps at 1e-3
@@ -115,7 +115,7 @@ def settings(scene: Scene, worlds: Worlds) -> Iterator[Setting]:
         pull = np.column_stack([worlds.gravity_x, worlds.gravity_y]) * config.drive_force
         yield Setting("opt.gravity", (slice(0, 2),), pull)
     if differs("mass", "inertia", "com_x", "com_y"):
-        spin = worlds.mass * worlds.inertia * scene.thing.gyration_squared
+        spin = worlds.mass * worlds.inertia * scene.object.gyration_squared
         yield Setting("body_mass", (body,), worlds.mass, const=True)
         yield Setting("body_inertia", (body,), np.repeat(spin[:, None], 3, axis=1), const=True)
         yield Setting(

@@ -123,7 +123,7 @@ def measure_play(scene: Scene, held: Supports, contacts: FloatArray, delta: floa
     for side, expected in zip((1.0, -1.0), predicted, strict=True):  # turning the object turns
         speed = max(expected, 1e-6) / WAY  # the hand the other way round
         data = rigid_data(model, start[3:])
-        torque = scene.config.object_damping * scene.thing.gyration_squared * speed
+        torque = scene.config.object_damping * scene.object.gyration_squared * speed
         data.qfrc_applied[2] = side * torque
         with no_log():
             for step in range(math.ceil(_LONGEST / scene.config.time_step)):

@@ -110,7 +110,7 @@ def shake(scene: Scene, qpos: FloatArray, rng: np.random.Generator) -> Shake:
     sigma = float(scene.sigma(qpos[None, :])[0])
     model = rigid_model(scene, sigma)
     trial = _Trial(scene, sigma, model, np.array(qpos[3:]))
-    gyration = math.sqrt(scene.thing.gyration_squared)
+    gyration = math.sqrt(scene.object.gyration_squared)
     done: list[Push] = []
     with no_log():
         for wrench in pushes(gyration):

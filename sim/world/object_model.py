@@ -30,7 +30,7 @@ class NormalObject:
 
     Attributes
     ----------
-    centre, unit:
+    centre, diameter:
         Centroid (2,) and diameter in the case's frame B and unit.
     vertices:
         (n, 2), counterclockwise.
@@ -42,16 +42,16 @@ class NormalObject:
 
     outline: Outline = field(repr=False)
     centre: FloatArray = field(init=False)
-    unit: float = field(init=False)
+    diameter: float = field(init=False)
     vertices: FloatArray = field(init=False, repr=False)
     pieces: tuple[FloatArray, ...] = field(init=False, repr=False)
     gyration_squared: float = field(init=False)
 
     def __post_init__(self) -> None:
-        centre, unit = self.outline.centroid, self.outline.diameter
-        normal = Outline((self.outline.vertices - centre) / unit)
+        centre, diameter = self.outline.centroid, self.outline.diameter
+        normal = Outline((self.outline.vertices - centre) / diameter)
         object.__setattr__(self, "centre", read_only(centre))
-        object.__setattr__(self, "unit", unit)
+        object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "vertices", normal.vertices)
         object.__setattr__(self, "pieces", convex_pieces(normal))
         object.__setattr__(self, "gyration_squared", polar_moment(normal.vertices) / normal.area)
@@ -67,7 +67,7 @@ def polar_moment(vertices: FloatArray) -> float:
     return float((cross * ((a * a).sum(1) + (a * b).sum(1) + (b * b).sum(1))).sum() / 12.0)
 
 
-def add_object(spec: MjSpec, thing: NormalObject, config: SimConfig) -> None:
+def add_object(spec: MjSpec, normal: NormalObject, config: SimConfig) -> None:
     """Add the body ``object``: two slides, a hinge, one solid per convex piece.
 
     The inertia is stated, not left to the pieces.
@@ -75,14 +75,14 @@ def add_object(spec: MjSpec, thing: NormalObject, config: SimConfig) -> None:
     body = spec.worldbody.add_body(name="object")
     body.explicitinertial = True
     body.mass = 1.0
-    spin = thing.gyration_squared
+    spin = normal.gyration_squared
     body.inertia = [spin, spin, spin]
     slide, hinge = mj.mjtJoint.mjJNT_SLIDE, mj.mjtJoint.mjJNT_HINGE
     damping = config.object_damping
     body.add_joint(name="object_x", type=slide, axis=[1, 0, 0], damping=[damping, 0, 0])
     body.add_joint(name="object_y", type=slide, axis=[0, 1, 0], damping=[damping, 0, 0])
     body.add_joint(name="object_turn", type=hinge, axis=[0, 0, 1], damping=[damping * spin, 0, 0])
-    for number, piece in enumerate(thing.pieces):
+    for number, piece in enumerate(normal.pieces):
         if _width(piece) < THINNEST_PIECE:
             continue
         solid = bipyramid(piece)

@@ -42,5 +42,5 @@ def disc_depths(scene: Scene, sigma: float, pose: FloatArray) -> FloatArray:
     cos, sin = np.cos(turn), np.sin(turn)
     fingers = at @ np.array([[cos, -sin], [sin, cos]])
     out = np.empty(3)
-    depths(scene.thing.vertices, fingers, scene.finger_radius / scene.thing.unit, out)
+    depths(scene.object.vertices, fingers, scene.finger_radius / scene.object.diameter, out)
     return out

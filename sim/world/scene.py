@@ -40,13 +40,13 @@ class Scene:
     finger_radius: float
     config: SimConfig
     instrumented: bool = False
-    thing: NormalObject = field(init=False, repr=False)
+    object: NormalObject = field(init=False, repr=False)
     kinematics: HandKinematics = field(init=False, repr=False)
     model: MjModel = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        thing = NormalObject(self.outline)
-        object.__setattr__(self, "thing", thing)
+        normal = NormalObject(self.outline)
+        object.__setattr__(self, "object", normal)
         object.__setattr__(self, "kinematics", HandKinematics(self.hand))
         object.__setattr__(self, "model", self.spec(looks=False).compile())
 
@@ -55,7 +55,7 @@ class Scene:
         radius = self.finger_radius / self.outline.diameter
         spec = build_hand(self.hand, radius, self.config, looks)
         spec.modelname = "icage_scene"
-        add_object(spec, self.thing, self.config)
+        add_object(spec, self.object, self.config)
         if self.instrumented:
             add_instruments(spec, radius)
             spec.body("object").simple = 0  # its centre of mass may be moved
@@ -73,8 +73,8 @@ class Scene:
         p = d + sigma e^{i theta} z_c in B, so the object at -e^{-i theta} (p - c), turned -theta.
         """
         rows = np.atleast_2d(np.asarray(placements, dtype=np.float64))
-        theta, sigma = rows[:, 2], rows[:, 3] / self.thing.unit
-        x, y = ((rows[:, :2] - self.thing.centre) / self.thing.unit).T
+        theta, sigma = rows[:, 2], rows[:, 3] / self.object.diameter
+        x, y = ((rows[:, :2] - self.object.centre) / self.object.diameter).T
         back = np.exp(-1j * theta)
         object_at = -back * (x + 1j * y) - sigma * self.kinematics.centroid
         slides = sigma[:, None] * self.kinematics.lengths
@@ -87,8 +87,8 @@ class Scene:
         theta = -rows[:, 5]
         object_at = rows[:, 3] + 1j * rows[:, 4]
         d = -np.exp(1j * theta) * (object_at + sigma * self.kinematics.centroid)
-        xy = np.column_stack([d.real, d.imag]) * self.thing.unit + self.thing.centre
-        return np.column_stack([xy, theta, sigma * self.thing.unit])
+        xy = np.column_stack([d.real, d.imag]) * self.object.diameter + self.object.centre
+        return np.column_stack([xy, theta, sigma * self.object.diameter])
 
     def sigma(self, qpos: FloatArray) -> FloatArray:
         """[diameter] The tendon's length, (N,), summed the same way for any N."""

@@ -52,7 +52,7 @@ def levels(n: int, radius: float) -> tuple[float, float, float]:
 
 
 def found(cage: Cage) -> tuple[float, float, float]:
-    assert cage.verdict == "cage"
+    assert cage.status == "cage"
     assert cage.sigma_first is not None
     assert cage.sigma_max is not None
     return cage.sigma_0, cage.sigma_first, cage.sigma_max
@@ -66,8 +66,8 @@ def test_points_on_a_regular_polygon(n: int) -> None:
 
 @pytest.mark.parametrize("n", POINTS[:4])
 def test_points_by_the_papers_method(n: int) -> None:
-    engine: Method = ContactSpace()
-    cage = plan(Outline(ngon(n)), middles(n, 0.0), engine=engine)
+    method: Method = ContactSpace()
+    cage = plan(Outline(ngon(n)), middles(n, 0.0), method=method)
     assert found(cage) == pytest.approx(levels(n, 0.0), rel=EXACT)
 
 

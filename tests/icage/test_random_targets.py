@@ -43,7 +43,7 @@ def ratios(cage: Cage) -> Floats:
 
 def same(a: Cage, b: Cage) -> bool:
     x, y = ratios(a), ratios(b)
-    if a.verdict != b.verdict or (np.isinf(x) != np.isinf(y)).any():
+    if a.status != b.status or (np.isinf(x) != np.isinf(y)).any():
         return False
     finite = np.isfinite(x)
     return bool((np.abs(x[finite] / y[finite] - 1.0) <= RATIO).all())
@@ -53,7 +53,7 @@ def same(a: Cage, b: Cage) -> bool:
 @given(targets)
 def test_levels_are_in_order_and_the_target_is_the_one_asked_for(target: Target) -> None:
     cage = plan_of(target)
-    assert cage.verdict in ("cage", "never_escapes")
+    assert cage.status in ("cage", "never_escapes")
     size = cage.outline.diameter
     assert np.abs(cage.contacts - target.contacts).max() <= 1e-8 * size
     first, last = ratios(cage)
@@ -99,7 +99,7 @@ def test_reflection_swaps_two_fingers(target: Target) -> None:
 def test_the_escape_path_leads_out(target: Target) -> None:
     cage, ring = plan_of(target), Ring.of(target.vertices)
     if cage.escape_path is None:
-        assert cage.verdict == "never_escapes"
+        assert cage.status == "never_escapes"
         return
     facts = path_facts(ring, unit_hand(target.contacts), cage.escape_path, cage.contacts)
     assert facts.depth <= 1e-9 * ring.diameter
@@ -149,7 +149,7 @@ def test_disc_grasps_on_arcs_have_levels_in_order(number: int) -> None:
     rng = np.random.default_rng([98, number])
     target = random_target(rng, radius=rng.uniform(0.01, 0.08))
     cage = plan(Outline(target.vertices), target.contacts, target.radius)
-    assert cage.verdict == "cage"
+    assert cage.status == "cage"
     assert np.abs(cage.contacts - target.contacts).max() <= 1e-5 * cage.outline.diameter
     levels = (cage.sigma_0, cage.sigma_first, cage.sigma_max, cage.sigma_max_upper)
     assert list(levels) == sorted(levels)
@@ -164,7 +164,7 @@ def test_discs_close_on_the_true_arcs_where_the_query_says(number: int) -> None:
     target = random_target(rng, radius=rng.uniform(0.01, 0.08))
     ring, hand = Ring.of(target.vertices), unit_hand(target.contacts)
     cage = plan(Outline(target.vertices), target.contacts, target.radius)
-    assert cage.verdict == "cage"
+    assert cage.status == "cage"
     assert cage.sigma_max <= cage.sigma_max_upper < cage.sigma_max * (1.0 + 1e-4)
     facts = path_facts(ring, hand, cage.escape_path, cage.contacts, target.radius)
     assert facts.depth <= 1e-9 * ring.diameter

@@ -34,7 +34,7 @@ from icage.geometry.exterior import exterior_pieces, without_straight_vertices
 from icage.geometry.statics import balance, contact_normals, free_fingers
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
 from icage.grasps.of_one_hand import grasps_of_hand
-from icage.grasps.search import Bench, Candidate, Wanted, best_grasps
+from icage.grasps.search import Candidate, GraspEvaluator, Wanted, best_grasps
 from icage.hand import HandShape
 from icage.method import Method
 from icage.outline import Outline
@@ -81,7 +81,7 @@ class Specimen:
 
 def held(outline: Outline, ring: Ring, radius: float) -> Candidate | None:
     """The best of a few grasps that hold beyond doubt and not only by a hair."""
-    bench = Bench(outline, radius, Wanted())
+    bench = GraspEvaluator(outline, radius, Wanted())
     jobs = bench.jobs(np.random.default_rng(0))
     tried = [
         bench.at(*jobs[k]) for k in np.linspace(0, len(jobs) - 1, min(TRIED, len(jobs)), dtype=int)
@@ -127,7 +127,7 @@ def _outline(one: Specimen) -> None:
 
 def _plan(one: Specimen) -> None:
     for cage in one.cages:
-        assert cage.verdict in ("cage", "never_escapes")
+        assert cage.status in ("cage", "never_escapes")
         top = cage.sigma_largest if cage.sigma_max is None else cage.sigma_max
         assert top is not None
         first = top if cage.sigma_first is None else cage.sigma_first
@@ -136,7 +136,7 @@ def _plan(one: Specimen) -> None:
             assert cage.sigma_max <= cage.sigma_max_upper
         levels = [p.sigma for p in cage.punctures]
         assert levels == sorted(levels)
-        if cage.verdict == "cage":
+        if cage.status == "cage":
             assert cage.punctures[-1].sigma == cage.sigma_max
             assert cage.punctures[0].sigma == cage.sigma_first
         assert cage.adjusted_by <= 1e-5 * one.size
@@ -148,7 +148,7 @@ def _plan(one: Specimen) -> None:
 
 
 def _both_methods(one: Specimen) -> None:
-    other = plan(one.outline, one.cage.contacts, engine=ContactSpace())
+    other = plan(one.outline, one.cage.contacts, method=ContactSpace())
     assert disagreements(one.cage, other) == []
     assert len(other.grasps) == len(one.cage.grasps)
 
@@ -228,7 +228,7 @@ def _regions(one: Specimen) -> None:
 
 def _escape_path(one: Specimen) -> None:
     for cage in one.cages:
-        if cage.verdict == "never_escapes":
+        if cage.status == "never_escapes":
             assert cage.escape_path is None
             continue
         assert cage.escape_path is not None
@@ -273,7 +273,7 @@ def _grasp_search(one: Specimen) -> None:
         best = best_grasps(one.outline, top=1, rng=np.random.default_rng(0))[0]
         assert best.sigma_0 <= best.sigma_first <= best.sigma_max
         assert best.score >= one.candidate.score
-        assert plan(one.outline, best.contacts).verdict != "not_a_cage"
+        assert plan(one.outline, best.contacts).status != "not_a_cage"
 
 
 def _grasps_of_hand(one: Specimen) -> None:
@@ -423,9 +423,9 @@ def test_shapes_without_a_grasp(shape: Shape) -> None:
     low, high = outline.vertices.min(0), outline.vertices.max(0)
     middle = 0.5 * (low + high)
     on = np.array([[low[0], middle[1]], [middle[0], low[1]], [high[0], middle[1]]])
-    for engine in (CELLS, ContactSpace()):
-        cage = plan(outline, on, engine=engine)
-        assert cage.verdict == "not_a_cage"
+    for method in (CELLS, ContactSpace()):
+        cage = plan(outline, on, method=method)
+        assert cage.status == "not_a_cage"
         assert cage.why
         assert cage.sigma_0 == cage.sigma_first == cage.sigma_max
     assert (offsets(outline, 0.1, 8).outer.area) > outline.area
@@ -489,9 +489,9 @@ WRONG_CONTACTS: dict[str, tuple[Floats, str]] = {
 def test_contacts_that_are_no_hand_are_refused_by_every_method(name: str, method: str) -> None:
     contacts, message = WRONG_CONTACTS[name]
     outline = specimen("triangle").outline
-    engine: Method = ContactSpace() if method == "contact space" else CELLS
+    method: Method = ContactSpace() if method == "contact space" else CELLS
     with pytest.raises(InputError, match=message):
-        plan(outline, contacts, 0.1 if method == "discs" else 0.0, engine)
+        plan(outline, contacts, 0.1 if method == "discs" else 0.0, method)
 
 
 @pytest.mark.parametrize(

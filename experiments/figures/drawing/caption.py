@@ -39,7 +39,7 @@ class Line:
 def caption_lines(cage: Cage, unit: str) -> tuple[Line, ...]:
     """What there is to say about a cage, a row each."""
     target = Line("target", r"$\sigma_0$", _length(cage.sigma_0, unit), "", "target grasp")
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         why = textwrap.wrap(f"not a cage: {cage.why}", 74)
         return (target, *(Line("", "", "", "", text) for text in why))
     rows = [target]

@@ -45,9 +45,11 @@ class HandView:
         self, scene: Scene, view: View, regions: Sequence[FingerRegion], target: Placement
     ) -> None:
         self._scene, self._view = scene, view
-        self.radius = max(scene.finger_radius / scene.thing.unit * view.height / view.extent, 3.0)
+        self.radius = max(
+            scene.finger_radius / scene.object.diameter * view.height / view.extent, 3.0
+        )
         self._object = Path(
-            np.vstack([scene.thing.vertices, scene.thing.vertices[:1]]), closed=True
+            np.vstack([scene.object.vertices, scene.object.vertices[:1]]), closed=True
         )
         self._regions = [
             (FINGERS[r.finger - 1], DARK if r.level_name == "sigma_first" else LIGHT, path)
@@ -120,7 +122,7 @@ class HandView:
 def _normal_path(scene: Scene, region: FingerRegion) -> Path:
     """A region in the normalized object's frame."""
     normal = shapely.transform(
-        region.geometry, lambda points: (points - scene.thing.centre) / scene.thing.unit
+        region.geometry, lambda points: (points - scene.object.centre) / scene.object.diameter
     )
     return as_path(tidied(normal, 1e-3))
 

@@ -160,7 +160,7 @@ class _Graph:
         """The way out region by region: from where it is entered to where it is left."""
         found = self._found
         segments: list[list[FloatArray]] = []
-        region, hand = 0, self._study.look.target.hand
+        region, hand = 0, self._study.local_cage.target.hand
         for e in found.way_out():
             origin, to, _, kind = (int(v) for v in found.edges[e])
             if self.pair(origin) == pair:

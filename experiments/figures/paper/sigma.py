@@ -67,7 +67,7 @@ def _way(axes: Axes, study: Study) -> int:
     path, free = cage.escape_path, cage.escape_free_at
     if path is None or free is None:
         axes.set_axis_off()
-        words = "the hand never escapes" if cage.verdict == "never_escapes" else "not a cage"
+        words = "the hand never escapes" if cage.status == "never_escapes" else "not a cage"
         axes.text(0.5, 0.5, f"{words}: there is no way out", ha="center")
         return 0
     heading(axes, "a", r"$\sigma$ along the plan's way out, until the object is free")

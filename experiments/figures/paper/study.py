@@ -18,7 +18,7 @@ from icage.case import Case
 from icage.cells.regions import FingerRegion, caging_regions
 from icage.contact_space.boundary import Boundary
 from icage.contact_space.exploration import Exploration, Plane
-from icage.contact_space.method import ContactLook, ContactSpace
+from icage.contact_space.method import ContactLocalCage, ContactSpace
 from icage.discs.offsets import directions_on_arcs, offsets
 from icage.errors import InputError
 from icage.geometry.statics import contacts_reason
@@ -45,7 +45,7 @@ class Study:
 
     case: Case
     polygon: Outline
-    look: ContactLook
+    local_cage: ContactLocalCage
     segments: int
 
     @classmethod
@@ -59,11 +59,11 @@ class Study:
         """
         hand = HandShape.from_contacts(case.contacts)
         if case.finger_radius == 0.0:
-            look = ContactSpace().look(
+            local_cage = ContactSpace().local_cage(
                 case.outline, hand, case.contacts, TARGET_SHIFT, TARGET_TURN
             )  # fmt: skip
-            if look is not None:
-                return cls(case, case.outline, look, 0)
+            if local_cage is not None:
+                return cls(case, case.outline, local_cage, 0)
         for segments in _ARCS if case.finger_radius > 0.0 else ():
             found = _on_chords(case, hand, segments)
             if found is not None:
@@ -74,12 +74,12 @@ class Study:
     @property
     def found(self) -> Exploration:
         """The search."""
-        return self.look.found
+        return self.local_cage.found
 
     @property
     def plane(self) -> Plane:
         """The polygon, the hand and the pieces of the plane."""
-        return self.look.found.plane
+        return self.local_cage.found.plane
 
     @property
     def hand(self) -> HandShape:
@@ -100,7 +100,7 @@ class Study:
     def finest(self) -> Outline:
         """The polygon that the plan's punctures lie on; with discs much finer than ``polygon``."""
         work = self.answer.work
-        return self.polygon if work is None else work.search.terrain.outline
+        return self.polygon if work is None else work.search.free_space.outline
 
     @property
     def about(self) -> str | None:
@@ -125,17 +125,17 @@ class Study:
     @cached_property
     def target(self) -> FloatArray:
         """Contacts (3, 2) of the target on the polygon."""
-        return self.plane.contacts(self.look.target.hand)
+        return self.plane.contacts(self.local_cage.target.hand)
 
     @cached_property
     def cage(self) -> Cage:
         """The cage by the search, point fingers on ``polygon``: with discs not the plan's."""
-        return self.look.cage(self.target, self.polygon, 0.0)
+        return self.local_cage.cage(self.target, self.polygon, 0.0)
 
     @cached_property
     def regions(self) -> tuple[FingerRegion, ...]:
         """The plan's caging regions, from inside."""
-        if self.answer.verdict == "not_a_cage":
+        if self.answer.status == "not_a_cage":
             return ()
         return tuple(r for r in caging_regions(self.answer, gap=3e-3) if r.bound == "inner")
 
@@ -160,11 +160,13 @@ class Study:
         return np.array([[a, b] for a in ends[0] for b in ends[1]])
 
 
-def _on_chords(case: Case, hand: HandShape, segments: int) -> tuple[Outline, ContactLook] | None:
+def _on_chords(
+    case: Case, hand: HandShape, segments: int
+) -> tuple[Outline, ContactLocalCage] | None:
     """The inner offset polygon and the search on it, if the target is a minimum there."""
     through = directions_on_arcs(case.outline, case.finger_radius, case.contacts)
     polygon = offsets(case.outline, case.finger_radius, segments, through).inner
     chord = case.finger_radius * np.pi / segments / polygon.diameter if through else 0.0
     reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-    look = ContactSpace().look(polygon, hand, case.contacts, reach, turn)
-    return None if look is None else (polygon, look)
+    local_cage = ContactSpace().local_cage(polygon, hand, case.contacts, reach, turn)
+    return None if local_cage is None else (polygon, local_cage)

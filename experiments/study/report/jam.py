@@ -67,7 +67,7 @@ def presses(done: StudyRerun) -> list[Press]:
     )
     found: list[Press] = []
     for one in contacts(scene.model, data):
-        point = turn @ (one.point - qpos[3:5]) * scene.thing.unit + scene.thing.centre
+        point = turn @ (one.point - qpos[3:5]) * scene.object.diameter + scene.object.centre
         force = -(turn @ one.force) / scene.config.drive_force
         found.append(Press(one.finger, point, -(turn @ one.normal), force))
     return found

@@ -21,7 +21,7 @@ FORMATS = (ROOT / "docs/formats.md").read_text(encoding="utf-8")
 def test_the_case_of_the_formats_page_is_a_cage():
     (example,) = re.findall(r"```json\n(.*?)```", FORMATS, re.DOTALL)
     case = parse_case(json.loads(example), Path())
-    assert plan(case.outline, case.contacts, case.finger_radius).verdict == "cage"
+    assert plan(case.outline, case.contacts, case.finger_radius).status == "cage"
 
 
 def test_the_python_of_the_readme_runs():

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from experiments.cases.with_discs import PhysicalCase, physical_case
-from experiments.escape.run import Assault, Escape, at, judged
-from experiments.escape.setup import Arena
+from experiments.escape.run import AttackResult, Escape, at, judged
+from experiments.escape.setup import AttackSetup
 from icage.formats.case_json import read_case
 from models import CASES
 from sim.attack.guided import GuidedDriver, GuidedPull
@@ -49,12 +49,12 @@ def faked(**changed: Any) -> Escape:
 
     low, high = changed.get("interval", (0.9999, 1.0001))
     found = Measured(low * top, high * top, high * top, 9, 9, 18, 1e-4, 1.0)
-    assault = Assault(
+    result = AttackResult(
         kind, run(changed.get("below", 0), top), run(changed.get("above", 20), top), found
     )
     above = at(cage.sigma_max, cage.sigma_0, 1)
     physical = PhysicalCase.of(case, cage)
-    return Escape(physical, 20, 0, below=0.0, above=above, assaults=(assault,))
+    return Escape(physical, 20, 0, below=0.0, above=above, attackers=(result,))
 
 
 def test_what_goes_as_planned_is_ok():
@@ -131,15 +131,15 @@ def test_a_second_attempt_comes_through_a_narrow_pass():
     cage, unit = physical.cage, physical.case.outline.diameter
     assert cage.sigma_max is not None
     assert cage.sigma_max_upper is not None
-    arena = Arena.of(physical, at(cage.sigma_max, cage.sigma_0, -1), 2)
-    assert arena.path is not None
-    starts = np.repeat(arena.target[None, :], 8, axis=0)
+    setup = AttackSetup.of(physical, at(cage.sigma_max, cage.sigma_0, -1), 2)
+    assert setup.path is not None
+    starts = np.repeat(setup.target[None, :], 8, axis=0)
 
     def attacked_at(level: float, stream: int, retries: int) -> Attacks:
         openings, rng = np.full(8, level / unit), np.random.default_rng([0, 4]).spawn(9)[stream]
         pull = GuidedPull(retries=retries)
-        driver = GuidedDriver(arena.scene, openings, arena.path, rng, pull)
-        return attack(arena.scene, arena.model, starts, openings, driver, 2)
+        driver = GuidedDriver(setup.scene, openings, setup.path, rng, pull)
+        return attack(setup.scene, setup.model, starts, openings, driver, 2)
 
     above = at(cage.sigma_max_upper, cage.sigma_0, 1)
     once, again = attacked_at(above, 4, 0), attacked_at(above, 4, GuidedPull().retries)

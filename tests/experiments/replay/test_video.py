@@ -159,7 +159,7 @@ def test_a_film_of_one_trial_tells_its_end_at_the_end_and_holds_the_object(
     green = (corner[..., 1] - corner[..., 0]).max(axis=(1, 2))
     assert green[: first_end - 1].max() < 40 < green[first_end + 1 :].min()
     view = window_on(one.scene, clip.qpos, *MAIN, whole=True)
-    x, y = one.scene.thing.vertices.T
+    x, y = one.scene.object.vertices.T
     for qpos in clip.qpos:
         cos, sin = np.cos(qpos[5]), np.sin(qpos[5])
         object_ = np.column_stack([cos * x - sin * y + qpos[3], sin * x + cos * y + qpos[4]])

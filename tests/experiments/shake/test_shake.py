@@ -84,7 +84,7 @@ def test_derived_targets_keep_the_hand_and_the_kind(name: str):
     case = read_case(CASES / f"{name}.json")
     derived = with_discs(case, 0.02 * case.outline.diameter)
     cage = physical_case(case).cage
-    assert cage.verdict == "cage"
+    assert cage.status == "cage"
     assert cage.adjusted_by < 1e-9 * case.outline.diameter
     sides = [np.diff(c[[0, 1, 2, 0]], axis=0) for c in (case.contacts, derived.contacts)]
     lengths = [np.hypot(*side.T) for side in sides]

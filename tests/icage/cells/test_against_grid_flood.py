@@ -85,7 +85,7 @@ def test_bracket_of_the_triangle_holds_the_closed_form() -> None:
 def test_never_escapes_is_proved_by_the_optimistic_flood(name: str) -> None:
     case, _ = load(name)
     assert never_escapes(case.outline, case.contacts, STUCK[name])
-    assert plan(case.outline, case.contacts, case.finger_radius).verdict == "never_escapes"
+    assert plan(case.outline, case.contacts, case.finger_radius).status == "never_escapes"
 
 
 def test_a_cage_that_opens_is_not_proved_to_hold() -> None:

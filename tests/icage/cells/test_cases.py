@@ -35,7 +35,7 @@ def test_all_cases_are_here() -> None:
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_expected_values(path: Path) -> None:
     cage, expected = load(path)
-    assert cage.verdict == expected["verdict"]
+    assert cage.status == expected["verdict"]
     assert same(cage.sigma_0, expected["sigma_0"])
     for key in ("sigma_first", "sigma_max"):
         if key in expected:
@@ -48,7 +48,7 @@ def test_expected_values(path: Path) -> None:
         if bracket is not None:
             slack = 1.0 + 1e-12
             assert bracket[0] / slack <= getattr(cage, key) <= bracket[1] * slack
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         assert cage.why
 
 
@@ -69,7 +69,7 @@ def test_disc_brackets(path: Path) -> None:
 def test_the_document_is_consistent(path: Path) -> None:
     """Punctures ascend from sigma_first to the escape, joins name grasps, levels are ordered."""
     cage, _ = load(path)
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         assert cage.sigma_first == cage.sigma_max == cage.sigma_0
         return
     levels = [p.sigma for p in cage.punctures]
@@ -79,7 +79,7 @@ def test_the_document_is_consistent(path: Path) -> None:
     assert joined == list(range(1, len(cage.grasps)))
     if cage.punctures:
         assert cage.punctures[0].sigma == cage.sigma_first
-    if cage.verdict == "cage":
+    if cage.status == "cage":
         assert cage.sigma_first is not None
         assert cage.sigma_max is not None
         assert cage.punctures[-1].kind == "escape"

@@ -45,7 +45,7 @@ def rigid(angle: float, shift: FloatArray) -> Callable[[FloatArray], FloatArray]
 def check(path: Path, moved: Cage, within: float = EXACT) -> None:
     vertices, contacts, radius = data_of(path)
     base = plan(Outline(vertices), contacts, radius)
-    assert moved.verdict == base.verdict
+    assert moved.status == base.status
     assert len(moved.grasps) == len(base.grasps)
     for a, b in zip(ratios(moved), ratios(base), strict=True):
         assert a == b or abs(a / b - 1.0) <= within

@@ -23,9 +23,9 @@ FILES = sorted(CASES.glob("*.json"))
 EXACT = 1e-7
 
 
-def solved(path: Path, engine: ContactSpace = CONTACT_SPACE) -> tuple[Case, Cage]:
+def solved(path: Path, method: ContactSpace = CONTACT_SPACE) -> tuple[Case, Cage]:
     case = read_case(path)
-    return case, plan(case.outline, case.contacts, case.finger_radius, engine)
+    return case, plan(case.outline, case.contacts, case.finger_radius, method)
 
 
 def test_all_cases_are_here() -> None:
@@ -37,7 +37,7 @@ def test_all_cases_are_here() -> None:
 def test_expected_values(path: Path, merge: bool) -> None:
     _, cage = solved(path, ContactSpace(merge=merge))
     expected = json.loads(path.read_text())["expected"]
-    assert cage.verdict == expected["verdict"]
+    assert cage.status == expected["verdict"]
     for key in ("sigma_0", "sigma_first", "sigma_max"):
         if key in expected:
             level = expected[key]
@@ -49,7 +49,7 @@ def test_expected_values(path: Path, merge: bool) -> None:
         assert cage.sigma_max_upper / cage.sigma_max - 1.0 < 1e-4
         assert cage.sigma_max <= high
         assert cage.sigma_max_upper >= low
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         assert cage.why
 
 
@@ -80,7 +80,7 @@ def test_grasps_and_punctures_are_those_of_the_cells(path: Path) -> None:
 def test_the_escape_path_leads_out(path: Path) -> None:
     case, cage = solved(path)
     if cage.escape_path is None:
-        assert cage.verdict != "cage"
+        assert cage.status != "cage"
         return
     ring, hand = Ring.of(case.outline.vertices), unit_hand(case.contacts)
     facts = path_facts(ring, hand, cage.escape_path, cage.contacts, case.finger_radius)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import icage.cells.free_space
 import icage.cells.method
-import icage.cells.solver
 import icage.contact_space.exploration as exploration
 import icage.contact_space.surroundings as surroundings
 from icage.agreement import disagreements
@@ -22,13 +22,13 @@ from models import CASES
 NAMES = ("tunnel_golden", "cross_multi", "rand16_best", "hook_deep_multi", "pliers_best")
 
 
-def differing(names: tuple[str, ...] = NAMES, engine: ContactSpace = CONTACT_SPACE) -> list[str]:
+def differing(names: tuple[str, ...] = NAMES, method: ContactSpace = CONTACT_SPACE) -> list[str]:
     """Cases on which the two methods disagree."""
     found: list[str] = []
     for name in names:
         case = read_case(CASES / f"{name}.json")
         cells = plan(case.outline, case.contacts)
-        if disagreements(cells, plan(case.outline, case.contacts, 0.0, engine)):
+        if disagreements(cells, plan(case.outline, case.contacts, 0.0, method)):
             found.append(name)
     return found
 
@@ -38,7 +38,7 @@ def test_without_faults_they_agree() -> None:
 
 
 def test_a_dropped_tunnel_rule_is_seen() -> None:
-    assert "tunnel_golden" in differing(engine=ContactSpace(tunnels=False))
+    assert "tunnel_golden" in differing(method=ContactSpace(tunnels=False))
 
 
 def test_a_pass_off_by_1e_5_in_contact_space_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,13 +51,13 @@ def test_a_pass_off_by_1e_5_in_contact_space_is_seen(monkeypatch: pytest.MonkeyP
 
 
 def test_a_pass_off_by_1e_5_in_the_cells_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    explore = icage.cells.solver.explore
+    explore = icage.cells.free_space.explore
 
     def off(*args: Any) -> Any:
         outcome, level, *rest = explore(*args)
         return outcome, level * (1.0 + 1e-5), *rest
 
-    monkeypatch.setattr(icage.cells.solver, "explore", off)
+    monkeypatch.setattr(icage.cells.free_space, "explore", off)
     assert differing() == list(NAMES)
 
 
@@ -82,7 +82,7 @@ def without_diagonal(exterior: Callable[..., Any], number: int) -> Callable[...,
 
 
 @pytest.mark.parametrize(
-    "module", [surroundings, icage.cells.solver], ids=["contact space", "cells"]
+    "module", [surroundings, icage.cells.free_space], ids=["contact space", "cells"]
 )
 def test_a_missing_diagonal_is_seen(module: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     exterior = module.exterior_pieces

@@ -22,8 +22,8 @@ RIGHT_AND_WITHOUT = [
 ]
 
 
-def sigma_max(case: Case, engine: ContactSpace) -> float:
-    level = plan(case.outline, case.contacts, 0.0, engine).sigma_max
+def sigma_max(case: Case, method: ContactSpace) -> float:
+    level = plan(case.outline, case.contacts, 0.0, method).sigma_max
     assert level is not None
     return level
 
@@ -60,8 +60,8 @@ def test_without_tunnel_edges_the_levels_of_disc_fingers_have_no_order() -> None
     """Here the highest of the inner polygons is above the lowest of the outer ones."""
     case = read_case(HARD / "spiral_tunnel.json")
     wrong, right = (
-        plan(case.outline, case.contacts, case.finger_radius, engine)
-        for engine in (ContactSpace(tunnels=False), CONTACT_SPACE)
+        plan(case.outline, case.contacts, case.finger_radius, method)
+        for method in (ContactSpace(tunnels=False), CONTACT_SPACE)
     )
     assert wrong.sigma_max == pytest.approx(0.131544953, rel=1e-8)
     assert wrong.sigma_max_upper == pytest.approx(0.131561897, rel=1e-8)

@@ -16,10 +16,10 @@ import icage.cells.target
 import icage.contact_space.target
 from icage.arrays import FloatArray
 from icage.cage import Cage
+from icage.cells.free_space import merge_tree
 from icage.cells.membership import VERDICTS, query
 from icage.cells.minima import first_joining
 from icage.cells.regions import caging_regions
-from icage.cells.solver import merge_tree
 from icage.contact_space.method import CONTACT_SPACE
 from icage.discs.offsets import offsets
 from icage.errors import GeometryError
@@ -53,7 +53,7 @@ def plan_of(path: Path) -> Cage:
 @pytest.mark.parametrize("path", FAR, ids=lambda p: p.stem)
 def test_discs_far_from_the_origin(path: Path) -> None:
     cage = plan_of(path)
-    assert cage.verdict == "cage"
+    assert cage.status == "cage"
     assert cage.sigma_0 < cage.sigma_first <= cage.sigma_max <= cage.sigma_max_upper
     rows = np.array([grasp.placement.as_array() for grasp in cage.grasps])
     verdicts = [VERDICTS[v] for v in query(cage, rows).verdict]
@@ -194,7 +194,7 @@ def test_cells_round_a_target_are_never_cut_short(monkeypatch: pytest.MonkeyPatc
         plan(Outline(vertices), contacts)
     monkeypatch.setattr(icage.contact_space.target, "_MOST", 0)
     with pytest.raises(GeometryError, match="regions meet"):
-        plan(Outline(vertices), contacts, engine=CONTACT_SPACE)
+        plan(Outline(vertices), contacts, method=CONTACT_SPACE)
 
 
 def test_a_search_that_gives_up_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -215,6 +215,6 @@ def test_sigma_first_of_the_search_is_that_of_the_merge_tree() -> None:
     """The search notes depths as it goes; here a basin is entered by a sliver of a cell."""
     target, moves = moved_targets.drawn(2018, 1179)
     cage = moved_targets.planned(target, moves[3])
-    found, size = cage.work.search, cage.work.search.terrain.pieces.diameter
+    found, size = cage.work.search, cage.work.search.free_space.pieces.diameter
     first = first_joining(merge_tree(found), 1e-10 * size, found.level)
     assert found.sigma_first() == first < 0.99 * found.level

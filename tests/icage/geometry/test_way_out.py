@@ -30,12 +30,12 @@ def test_corners_before_the_pinch():
 @pytest.mark.parametrize("name", NAMES)
 def test_the_path_is_pinched_once_and_its_gap_is_that_before(name: str):
     case = solved(name)
-    if case.cage.verdict != "cage":
+    if case.cage.status != "cage":
         assert case.cage.escape_free_at is None
         return
     cages = [case.cage]
     if not case.cage.finger_radius:
-        cages.append(plan(case.cage.outline, case.cage.contacts, engine=CONTACT_SPACE))
+        cages.append(plan(case.cage.outline, case.cage.contacts, method=CONTACT_SPACE))
     for cage in cages:
         path = cage.escape_path
         assert path is not None

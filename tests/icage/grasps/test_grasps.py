@@ -75,7 +75,7 @@ def found(name: str, aim: Aim, radius: float = 0.0, top: int = 6) -> tuple[Candi
 
 def score(cage: Cage, aim: Aim) -> float:
     """What the search ranks, from the plan of the same grasp."""
-    if cage.verdict == "not_a_cage":
+    if cage.status == "not_a_cage":
         return 0.0
     last = cage.sigma_largest if cage.sigma_max is None else cage.sigma_max
     first = last if cage.sigma_first is None else cage.sigma_first
@@ -123,7 +123,7 @@ def test_points_hold_and_the_plan_gives_the_same_levels(name: str, aim: Aim) -> 
     assert scores == sorted(scores, reverse=True)
     for grasp in grasps:
         cage = plan(outline, grasp.contacts)
-        assert cage.verdict != "not_a_cage"
+        assert cage.status != "not_a_cage"
         assert is_strict_minimum(ring, cage.contacts, tol=1e-9, margin=0.0)
         assert score(cage, aim) == pytest.approx(grasp.score, rel=1e-9)
         assert grasp.sigma_0 == pytest.approx(cage.sigma_0, rel=1e-9)
@@ -176,7 +176,7 @@ def test_discs_on_the_true_curve_can_be_planned(name: str, aim: Aim) -> None:
     outline = Outline(SMALL[name])
     for grasp in found(name, aim, RADIUS):
         cage = plan(outline, on_true_curve(name, grasp), RADIUS * outline.diameter)
-        assert cage.verdict != "not_a_cage"
+        assert cage.status != "not_a_cage"
         assert score(cage, aim) == pytest.approx(grasp.score, rel=2e-3)
 
 
@@ -238,7 +238,7 @@ def test_no_grasp_of_a_dense_grid_is_better(name: str, aim: Aim) -> None:
 @pytest.mark.parametrize("name", SMALL)
 def test_nearly_all_grasps_of_the_grid_are_cages(name: str) -> None:
     """The oracle's strict minima are the planner's: shallow ones alone may fall to the cut."""
-    verdicts = [cage.verdict for cage in enumerated(name)]
+    verdicts = [cage.status for cage in enumerated(name)]
     assert len(verdicts) >= 8
     assert verdicts.count("not_a_cage") == 0
 

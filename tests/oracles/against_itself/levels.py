@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from icage.cells.solver import Terrain, search
+from icage.cells.free_space import FreeSpace, search
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.discs.offsets import directions_on_arcs, offsets
 from icage.hand import HandShape
@@ -37,15 +37,15 @@ def levels(
     ``reach`` [diameter] is how far the minimum may be from the contacts: None for the planner's
     own limit, more where the polygon stands in for a curve.
     """
-    terrain = Terrain.around(Outline(vertices), HandShape.from_contacts(contacts), merge=merge)
-    wanted = contacts_as_configuration(terrain, contacts)
+    free_space = FreeSpace.around(Outline(vertices), HandShape.from_contacts(contacts), merge=merge)
+    wanted = contacts_as_configuration(free_space, contacts)
     if reach is None:
-        target = find_target(terrain, wanted)
+        target = find_target(free_space, wanted)
     else:
-        target = find_target(terrain, wanted, reach=reach, turn=max(1e-3, 10.0 * reach))
+        target = find_target(free_space, wanted, reach=reach, turn=max(1e-3, 10.0 * reach))
     if target is None or target.plateau is not None:
         return Levels(np.nan, np.nan, np.nan)
-    found = search(terrain, target.cell, target.sigma_0)
+    found = search(free_space, target.cell, target.sigma_0)
     if found.gave_up:
         raise RuntimeError("the search gave up")
     return Levels(target.sigma_0, found.sigma_first(), found.level)

@@ -90,7 +90,7 @@ def planned(target: Target, move: Move | None = None) -> Cage:
 
 def off(base: Cage, moved: Cage, scale: float) -> float:
     """Largest relative difference of a level; inf for another verdict or number of grasps."""
-    if base.verdict != moved.verdict:
+    if base.status != moved.status:
         return math.inf
     worst = 0.0
     for name in LEVELS:
@@ -113,7 +113,7 @@ def judge(seed: int, number: int) -> Outcome:
     except Exception as error:  # the sweep's business is to find them all
         outcome.exceptions.append(f"as drawn: {type(error).__name__}: {error}")
         return outcome
-    outcome.verdict = base.verdict
+    outcome.verdict = base.status
     outcome.opening = base.sigma_max / base.sigma_0 if base.sigma_max else None
     for move in moves:
         try:
@@ -127,7 +127,7 @@ def _refused_everywhere(target: Target, moves: list[Move], outcome: Outcome) -> 
     for move in moves:
         try:
             cage = planned(target, move)
-            outcome.disagreements.append(f"{move}: {cage.verdict}, refused as drawn")
+            outcome.disagreements.append(f"{move}: {cage.status}, refused as drawn")
         except GraspError:
             outcome.add(str(move), 0.0, move.tolerance)
         except Exception as error:

@@ -40,9 +40,9 @@ def _compare(target: Target, outcome: Outcome) -> None:
             outcome.add(way, difference(reference, found))
     assert reference is not None
     cage = plan(Outline(target.vertices), target.contacts)
-    outcome.verdict = cage.verdict
+    outcome.verdict = cage.status
     outcome.opening = cage.sigma_max / cage.sigma_0 if cage.sigma_max else None
-    if cage.verdict != "not_a_cage":
+    if cage.status != "not_a_cage":
         whole = Levels(
             cage.sigma_0,
             np.inf if cage.sigma_first is None else cage.sigma_first,

@@ -58,14 +58,14 @@ def _star(rng: Generator, n: int) -> np.ndarray:
 
 def compare(a: Cage, b: Cage, outcome: Outcome) -> None:
     """Note in what two cages differ."""
-    same = a.verdict == b.verdict
+    same = a.status == b.status
     outcome.add("verdict", 0.0 if same else float("inf"))
-    outcome.verdict = a.verdict
+    outcome.verdict = a.status
     for name in LEVELS:
         outcome.add(name, difference(getattr(a, name), getattr(b, name)))
     outcome.add("number of grasps", abs(len(a.grasps) - len(b.grasps)))
     outcome.add("number of punctures", abs(len(a.punctures) - len(b.punctures)))
-    if a.sigma_max is not None and a.verdict == "cage":
+    if a.sigma_max is not None and a.status == "cage":
         outcome.opening = a.sigma_max / a.sigma_0
 
 

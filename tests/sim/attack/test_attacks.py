@@ -68,7 +68,7 @@ def test_the_way_of_the_object_is_the_way_of_the_hand():
     scene, cage = t_cage()
     assert cage.escape_path is not None
     path = object_path(scene, cage.escape_path)
-    unit = scene.thing.unit
+    unit = scene.object.diameter
     assert path[0, 3] * unit == pytest.approx(cage.sigma_0)
     assert path[:, 3].max() * unit == pytest.approx(cage.escape_path[:, 3].max(), abs=1e-9)
     assert path[-1, 3] == pytest.approx(0.0, abs=1e-9)
@@ -83,7 +83,7 @@ def test_the_way_of_the_object_is_the_way_of_the_hand():
 
 def test_the_stop_stops_and_an_opening_must_be_one():
     scene, cage = t_cage()
-    opening = np.array([1.1, 1.3]) * cage.sigma_0 / scene.thing.unit
+    opening = np.array([1.1, 1.3]) * cage.sigma_0 / scene.object.diameter
     run = random_attacks(opening, 0, 1, 2.0)
     assert (run.ending == HELD).all()
     assert (run.rise_max > 0.999).all()
@@ -95,7 +95,7 @@ def test_the_stop_stops_and_an_opening_must_be_one():
 
 def test_any_number_of_threads_and_any_neighbours_give_the_same():
     scene, cage = t_cage()
-    opening = np.linspace(1.1, 1.4, 4) * cage.sigma_0 / scene.thing.unit
+    opening = np.linspace(1.1, 1.4, 4) * cage.sigma_0 / scene.object.diameter
     one, two = (random_attacks(opening, 3, threads, 0.5) for threads in (1, 2))
     fewer = random_attacks(opening[:2], 3, 2, 0.5)
     assert np.array_equal(one.end, two.end)
@@ -107,7 +107,7 @@ def test_any_number_of_threads_and_any_neighbours_give_the_same():
 def test_the_way_out_works_above_sigma_max_and_not_below():
     scene, cage = t_cage()
     assert cage.sigma_max is not None
-    top = cage.sigma_max / scene.thing.unit
+    top = cage.sigma_max / scene.object.diameter
     run = guided_attacks(top * np.array([0.998, 0.998, 1.002, 1.002]), 1)
     assert run.ending.tolist() == [HELD, HELD, ESCAPED, ESCAPED]
     assert run.penetration_max.max() < 1e-3
@@ -118,7 +118,7 @@ def led_in_vain(retries: int) -> np.ndarray:
     scene, cage = t_cage()
     assert cage.escape_path is not None
     path = object_path(scene, cage.escape_path)
-    openings = np.array([1.1 * cage.sigma_0 / scene.thing.unit])
+    openings = np.array([1.1 * cage.sigma_0 / scene.object.diameter])
     rng, pull = np.random.default_rng(0), GuidedPull(retries=retries)
     driver = GuidedDriver(scene, openings, path, rng, pull)
     one, wrench, motor = np.arange(1), np.zeros((1, 3)), np.zeros(1)
@@ -169,7 +169,7 @@ def test_the_interval_closes_in_on_where_escapes_begin():
 
 def test_a_broken_run_is_no_success():
     scene, cage = t_cage()
-    opening = np.full(2, 1.1 * cage.sigma_0 / scene.thing.unit)
+    opening = np.full(2, 1.1 * cage.sigma_0 / scene.object.diameter)
     starts = targets(2)
     starts[1, 3] = 1e12
     driver = RandomDriver(scene, opening, np.random.default_rng(0), RandomPull(duration=0.05))
@@ -181,7 +181,7 @@ def test_a_broken_run_is_no_success():
 def test_a_rigid_hand_is_left_above_sigma_max_only():
     scene, cage = t_cage()
     assert cage.sigma_max is not None
-    top = cage.sigma_max / scene.thing.unit
+    top = cage.sigma_max / scene.object.diameter
     inside = random_attacks(np.full(4, 0.99 * top), 0, 2, 2.0).end
     assert len(clear_poses(scene, inside, 0.99 * top)) == 4
     assert not len(clear_poses(scene, inside, 0.5 * top))

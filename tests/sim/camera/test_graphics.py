@@ -41,7 +41,7 @@ def test_one_module_imports_the_engine() -> None:
         for line in file.read_text().splitlines()
         if line.strip().startswith(("import mujoco", "from mujoco"))
     }
-    assert importing == {"engine.py", "camera_process.py"}
+    assert importing == {"engine.py", "process.py"}
 
 
 @pytest.mark.parametrize("setting", ["egl", "OSMesa ", "disable", ""])

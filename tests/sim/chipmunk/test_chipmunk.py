@@ -52,7 +52,7 @@ def on_the_way_out(grasp: KnownGrasp) -> tuple[Scene, float, np.ndarray]:
     assert cage.sigma_max is not None
     assert cage.escape_path is not None
     scene = grasp.scene()
-    top = cage.sigma_max / scene.thing.unit
+    top = cage.sigma_max / scene.object.diameter
     path = object_path(scene, cage.escape_path)
     k = int(np.argmax(path[:, 3] > 0.99 * top))
     share = (0.99 * top - path[k - 1, 3]) / (path[k, 3] - path[k - 1, 3])
@@ -78,7 +78,7 @@ def test_guaranteed_starts_end_in_the_target_as_in_mujoco(name: str) -> None:
     assert (closings.finger_forces.sum(axis=1) > 0.5).all()
     assert (closings.contacts >= 3).all()
     first = close_many(scene, starts)
-    unit = scene.thing.unit
+    unit = scene.object.diameter
     apart = np.abs(closings.end - first.end) / [unit, unit, 1.0, unit]
     assert apart.max() <= 2e-4
 
@@ -138,7 +138,7 @@ def test_nothing_gets_out_of_a_cage(name: str) -> None:
     grasp, cage = cage_of(name)
     assert cage.sigma_max is not None
     scene = grasp.scene()
-    openings = np.full(2, 0.998 * cage.sigma_max / scene.thing.unit)
+    openings = np.full(2, 0.998 * cage.sigma_max / scene.object.diameter)
     starts = np.repeat(scene.start_positions(grasp.target.as_array()), 2, axis=0)
     pull = RandomPull(duration=2.0)
     run = random_attack_second(scene, starts, openings, np.random.default_rng(2), pull)

@@ -46,7 +46,7 @@ def test_engine_contacts_are_exact_on_edges_vertices_and_in_corners() -> None:
     seen = 0
     for grasp in GRASPS:
         scene = grasp.scene()
-        unit, radius = scene.thing.unit, grasp.radius
+        unit, radius = scene.object.diameter, grasp.radius
         ring = grasp.outline.polygon.buffer(radius, quad_segs=400).exterior
         along = [ring.interpolate(s, normalized=True) for s in rng.uniform(0, 1, 200)]
         corners = grasp.outline.polygon.buffer(radius, join_style="mitre").exterior.coords
@@ -76,7 +76,7 @@ def _sunk(outline: Outline, near: FloatArray, distance: float) -> FloatArray | N
 
 def _engine_distance(scene: Scene, centre: FloatArray) -> float | None:
     """Smallest contact distance of finger 1 with its centre at a point of B."""
-    sigma = 3.0 * scene.thing.unit
+    sigma = 3.0 * scene.object.diameter
     data = mujoco.MjData(scene.model)
     placement = np.array([centre[0], centre[1], 0.4, sigma])
     data.qpos[:] = scene.start_positions(placement)[0]
@@ -92,8 +92,8 @@ def test_first_touch_is_the_first(grasp: KnownGrasp) -> None:
     starts = starts_near(grasp, 60, seed=1, opening=1.6, shift=0.1, turn=0.4)
     qpos = scene.start_positions(starts)
     touch = first_touch(scene, qpos)
-    kinematics, radius = scene.kinematics, grasp.radius / scene.thing.unit
-    body = shapely.Polygon(scene.thing.vertices)
+    kinematics, radius = scene.kinematics, grasp.radius / scene.object.diameter
+    body = shapely.Polygon(scene.object.vertices)
     for row, sigma in zip(qpos, touch.tolist(), strict=True):
         start = float(scene.sigma(row[None, :])[0])
         assert 0.0 < sigma <= start

@@ -155,7 +155,7 @@ def test_a_setting_is_one_value_a_trial_in_a_batch_and_on_own_models():
         mine = own_model(scene.model, changes, i)
         body = mine.body("object")
         assert body.mass[0] == worlds.mass[i]
-        spin = worlds.mass[i] * worlds.inertia[i] * scene.thing.gyration_squared
+        spin = worlds.mass[i] * worlds.inertia[i] * scene.object.gyration_squared
         np.testing.assert_allclose(body.inertia, spin, rtol=1e-14)
         assert body.ipos[:2].tolist() == [worlds.com_x[i], worlds.com_y[i]]
         for name in ("dof_invweight0", "body_subtreemass", "dof_frictionloss", "geom_friction"):
@@ -247,7 +247,7 @@ def test_an_object_whose_middle_is_off_its_weight_turns():
     worlds.gravity_x[:], worlds.com_y[:], worlds.speed[:] = 0.05, [0.1, -0.1], 0.02
     gone = travel(scene, close(scene, starts, worlds).closings)
     spin = 0.05 * 0.1 * scene.config.drive_force
-    rate = spin / (scene.config.object_damping * scene.thing.gyration_squared)
+    rate = spin / (scene.config.object_damping * scene.object.gyration_squared)
     assert gone[0, 2] == pytest.approx(-0.2 * rate, rel=0.05)  # pulled in x, above the middle
     assert gone[1, 2] == pytest.approx(0.2 * rate, rel=0.05)
 

@@ -64,7 +64,7 @@ def test_compiled_object_has_the_stated_inertia() -> None:
     scene = l_shape().scene()
     body = scene.model.body("object")
     assert body.mass[0] == 1.0
-    np.testing.assert_allclose(body.inertia, scene.thing.gyration_squared, rtol=1e-12)
+    np.testing.assert_allclose(body.inertia, scene.object.gyration_squared, rtol=1e-12)
     np.testing.assert_allclose(body.ipos, 0.0, atol=1e-15)
 
 
@@ -84,7 +84,7 @@ def test_the_engine_measures_the_distance_in_the_plane() -> None:
     rng = np.random.default_rng(5)
     scene = shipped("saw").scene()
     data = mujoco.MjData(scene.model)
-    outline = shapely.Polygon(scene.thing.vertices)
+    outline = shapely.Polygon(scene.object.vertices)
     pieces = [
         g for g in range(scene.model.ngeom) if scene.model.geom(g).name.startswith("object_piece")
     ]
@@ -94,7 +94,7 @@ def test_the_engine_measures_the_distance_in_the_plane() -> None:
         data.qpos[:] = 0.0
         data.qpos[3:5] = -row  # the object moves, finger 1 stays at the origin
         mujoco.mj_kinematics(scene.model, data)
-        true = outline.distance(shapely.Point(row)) - scene.finger_radius / scene.thing.unit
+        true = outline.distance(shapely.Point(row)) - scene.finger_radius / scene.object.diameter
         if outline.contains(shapely.Point(row)):
             continue
         seen = min(mujoco.mj_geomDistance(scene.model, data, finger, g, 2.0, None) for g in pieces)
@@ -131,7 +131,7 @@ def test_engine_and_planner_agree_where_the_fingers_stand(row: np.ndarray) -> No
     body = data.body("object")
     turn = body.xmat.reshape(3, 3)
     seen = np.array([turn.T @ (data.body(f"finger_{k}").xpos - body.xpos) for k in (1, 2, 3)])
-    in_case = seen[:, :2] * scene.thing.unit + scene.thing.centre
+    in_case = seen[:, :2] * scene.object.diameter + scene.object.centre
     np.testing.assert_allclose(in_case, scene.hand.fingers(row[0]), atol=1e-11)
     np.testing.assert_allclose(seen[:, 2], 0.0, atol=1e-15)
 

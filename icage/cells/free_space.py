@@ -31,7 +31,7 @@ class Configuration(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Terrain:
+class FreeSpace:
     """The free plane of one polygon cut into pieces, for one hand."""
 
     outline: Outline
@@ -43,7 +43,7 @@ class Terrain:
     worst: float
 
     @classmethod
-    def around(cls, outline: Outline, hand: HandShape, *, merge: bool = True) -> Terrain:
+    def around(cls, outline: Outline, hand: HandShape, *, merge: bool = True) -> FreeSpace:
         """Cut the plane around the outline; ``merge=False`` keeps raw triangles."""
         pieces, origin = exterior_pieces(outline, hand, merge=merge)
         return cls.of_pieces(outline, hand, pieces, origin)
@@ -51,8 +51,8 @@ class Terrain:
     @classmethod
     def of_pieces(
         cls, outline: Outline, hand: HandShape, pieces: Pieces, origin: FloatArray
-    ) -> Terrain:
-        """A terrain on pieces cut before (for a hand with at least this box)."""
+    ) -> FreeSpace:
+        """A free space on pieces cut before (for a hand with at least this box)."""
         z = np.ascontiguousarray(hand.unit_fingers)
         cap = largest_sigma(outline.diameter, hand)
         return cls(outline, hand, pieces, origin, z, cap, PASS_ERROR * outline.diameter)
@@ -103,7 +103,7 @@ class Terrain:
 class Search:
     """What a best-first search from the target's cell has found."""
 
-    terrain: Terrain
+    free_space: FreeSpace
     sigma_0: float
     outcome: int
     level: float
@@ -139,7 +139,7 @@ class Search:
 
         Basins met at the escape level itself belong to the escape, as in ``merge_tree``.
         """
-        cut = depth * self.terrain.pieces.diameter
+        cut = depth * self.free_space.pieces.diameter
         before = self.records[:, 0] < below_escape(self)
         deep = np.flatnonzero(before & (self.records[:, 0] - self.records[:, 1] > cut))
         return float(self.records[deep[0], 0]) if len(deep) else self.level
@@ -149,7 +149,7 @@ class Search:
         cell = self.nodes[self.edges[edge, 0], :3]
         finger, slot = int(self.edges[edge, 2]), int(self.edges[edge, 3])
         _, wx, wy = self.edge_value[edge]
-        a, b = self.terrain.on_edge(cell, finger, slot, wx, wy)
+        a, b = self.free_space.on_edge(cell, finger, slot, wx, wy)
         return Configuration(0.5 * (a.d + b.d), a.w)
 
 
@@ -168,7 +168,7 @@ class Tree:
 
 
 def search(
-    terrain: Terrain,
+    free_space: FreeSpace,
     cell: IntArray,
     sigma_0: float,
     *,
@@ -177,10 +177,10 @@ def search(
 ) -> Search:
     """Visit the cells around the target's in ascending order of the pass to them."""
     outcome, level, standing, *arrays = explore(
-        terrain.pieces, terrain.z, np.asarray(cell, dtype=np.int64), sigma_0,
-        terrain.cap, terrain.worst, stop_above, limit,
+        free_space.pieces, free_space.z, np.asarray(cell, dtype=np.int64), sigma_0,
+        free_space.cap, free_space.worst, stop_above, limit,
     )  # fmt: skip
-    return Search(terrain, sigma_0, int(outcome), float(level), int(standing), *arrays)
+    return Search(free_space, sigma_0, int(outcome), float(level), int(standing), *arrays)
 
 
 def merge_tree(found: Search) -> Tree:
@@ -188,10 +188,10 @@ def merge_tree(found: Search) -> Tree:
 
     Passes at the escape level itself belong to the escape. Complexity: a sort of the passes.
     """
-    terrain = found.terrain
+    free_space = found.free_space
     inside = inside_cells(found)
     birth, birth_at = births(
-        terrain.pieces, terrain.z, found.nodes[:inside], terrain.cap, terrain.worst
+        free_space.pieces, free_space.z, found.nodes[:inside], free_space.cap, free_space.worst
     )
     usable = (found.edges[:, 0] < inside) & (found.edges[:, 1] < inside)
     edges = np.where(usable[:, None], found.edges, -1)
