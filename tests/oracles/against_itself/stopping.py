@@ -17,7 +17,7 @@ def simulated_stops(
     """Share of runs whose interval at the stop holds the rate, and their mean length [trials]."""
     held, spent = 0, 0
     seen = np.zeros(runs, dtype=np.int64)  # of the runs that go on
-    for before, looked in local_cages():
+    for before, looked in looks():
         seen = seen + rng.binomial(looked - before, rate, len(seen))
         stops = half_width(seen, looked) <= wanted
         low, high = wilson_bounds(seen[stops], looked)
@@ -33,7 +33,7 @@ def exact_stops(rate: float, wanted: float) -> tuple[float, float]:
     """The same without chance: the count's distribution among runs that go on, look by look."""
     held, spent = 0.0, 0.0
     weight = np.ones(1)  # [probability] of every count
-    for before, looked in local_cages():
+    for before, looked in looks():
         added = looked - before
         weight = np.convolve(weight, binom.pmf(np.arange(added + 1), added, rate))
         counts = np.arange(looked + 1)
@@ -47,7 +47,7 @@ def exact_stops(rate: float, wanted: float) -> tuple[float, float]:
     return held, spent
 
 
-def local_cages() -> Iterator[tuple[int, int]]:
+def looks() -> Iterator[tuple[int, int]]:
     """Trials at the look before and at this one; without an end: every run stops."""
     before = 0
     for looked in itertools.count(AT_LEAST, LOOK_EVERY):
