@@ -17,12 +17,11 @@ from icage.agreement import disagreements
 from icage.cage import Cage, Puncture
 from icage.case import Case
 from icage.contact_space.method import CONTACT_SPACE
-from icage.errors import InputError
 from icage.planner import plan
-from icage.sampling import SamplingError, Starts, StartSet, draw_starts, has_rest, safe_level
-from sim.closing.batch import close_many
-from sim.closing.judge import OUTCOMES, Verdicts, judge
+from icage.sampling import SamplingError, Starts, StartSet, has_rest, safe_level
+from sim.closing.judge import OUTCOMES, Verdicts
 from sim.closing.outcome import ClosingOutcomes
+from sim.closing.replay import check_closable, check_radius_for_physics, replay_set
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
@@ -95,35 +94,31 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
         A guaranteed set is too small to be drawn from.
     """
     for case in cases:
-        if not case.finger_radius > 0.0:
-            raise InputError(
-                f"{case.name}: finger_radius is 0; a simulated hand needs fingers of some radius"
-            )
+        check_radius_for_physics(case.finger_radius, case.name)
     runs: list[Run] = []
     skipped: list[str] = []
     for number, case in enumerate(cases):
         report("planning", number, len(cases))
-        cage = plan(case.outline, case.contacts, case.finger_radius)
-        second = plan(case.outline, case.contacts, case.finger_radius, CONTACT_SPACE)
-        if cage.status == "not_a_cage":
-            raise InputError(f"{case.name} is not a cage ({cage.why}): there is nothing to replay")
+        cage, second = plan(case), plan(case, method=CONTACT_SPACE)
+        check_closable(cage, case.name)
         scene = Scene(case.outline, cage.hand, case.finger_radius, SimConfig())
         for which in _sets(cage):
             rng = np.random.default_rng([seed, number, 0 if which == "guaranteed" else 1])
-            drawing = _Bar(report, f"placements {case.name} {which}", trials)
+            bars = [_Bar(report, f"{what} {case.name} {which}", trials) for what in _STAGES]
             try:
-                starts = draw_starts(cage, which, trials, rng, drawing)
+                done = replay_set(cage, scene, which, trials, rng, threads, *bars)
             except SamplingError as error:
                 if which == "guaranteed":
                     raise
                 skipped.append(f"{case.name}: {error}")
                 continue
-            closing = _Bar(report, f"closing {case.name} {which}", trials)
-            closings = close_many(scene, starts.placements, threads, closing)
-            verdicts = judge(closings, cage.grasps, case.outline)
-            runs.append(Run(case, cage, second, scene, which, starts, closings, verdicts))
+            found = done.starts, done.closings, done.verdicts
+            runs.append(Run(case, cage, second, scene, which, *found))
     report("planning", len(cases), len(cases))
     return Replay(tuple(runs), seed, tuple(skipped))
+
+
+_STAGES: Final = ("placements", "closing")
 
 
 def _sets(cage: Cage) -> Iterator[StartSet]:

@@ -2,7 +2,7 @@
 
 What is read from a user, listed, drawn, written and shown follows from the rows; so does what an
 input does, since a row names the field that it sets. An input is added here, and nowhere else where
-such a field is there already. [docs/formats.md has the rows as a table]
+such a field is there already. docs/formats.md has the rows as a table.
 """
 
 from __future__ import annotations

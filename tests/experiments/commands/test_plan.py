@@ -140,7 +140,7 @@ def test_a_shipped_object_needs_only_its_name(name: str, capsys: Any):
     result = here(capsys, "plan", name)
     assert result.code == 0
     assert "verdict      cage\n" in result.out
-    assert " mm, hand phi = " in result.out
+    assert " mm, hand (phi_1, phi_2) = " in result.out
 
 
 @pytest.mark.slow
