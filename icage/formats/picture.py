@@ -64,6 +64,25 @@ def cage_picture(cage: Cage, width: float = WIDTH) -> str:
     return sheet.svg(body, list(_caption(cage)))
 
 
+def way_out_picture(cage: Cage, width: float = WIDTH) -> str:
+    """The object, the fingers' ways along the escape path, the hand at sigma_max and once free."""
+    path, free = cage.escape_path, cage.escape_free_at
+    if path is None or free is None:
+        return cage_picture(cage, width)
+    ways = cage.hand.fingers(path[: free + 1])
+    widest = ways[int(np.argmax(path[: free + 1, 3]))]
+    boxes = [box for hand in ways for box in _discs_box(hand, cage.finger_radius)]
+    sheet = _Sheet(_bounds([cage.outline.vertices, *boxes]), width)
+    body = list(_object(sheet, cage.outline.polygon))
+    for finger in range(ways.shape[1]):
+        points = _pairs(sheet.points(ways[:, finger]))
+        body.append(f'<polyline points="{points}" fill="none" stroke="{HAND}" opacity="0.6"/>')
+    body += _hand(sheet, widest, cage.finger_radius, HAND, solid=False)
+    body += _hand(sheet, ways[-1], cage.finger_radius, OUT, solid=True)
+    top, unit = path[: free + 1, 3].max(), f" {cage.unit}" if cage.unit else ""
+    return sheet.svg(body, [f"the way out opens at sigma {top:.6g}{unit} (dashed); red: free"])
+
+
 def _regions(cage: Cage) -> tuple[list[shapely.MultiPolygon], list[shapely.MultiPolygon]]:
     """Inner regions below sigma_max and below sigma_first; none where there is nothing to draw."""
     if cage.work is None:
@@ -106,7 +125,7 @@ class _Sheet:
             f'<text x="{_MARGIN}" y="{y:.1f}">{escape(line)}</text>'
             for y, line in zip(down, caption, strict=True)
         ]
-        width = max(self.width, 2.0 * _MARGIN + 6.4 * max(map(len, caption), default=0))
+        width = max(self.width, 2.0 * _MARGIN + 7.0 * max(map(len, caption), default=0))
         height = self.height + _CAPTION * len(caption)
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
