@@ -64,7 +64,7 @@ def plan(
     >>> triangle = [[0, 0], [1, 0], [0.5, 0.75**0.5]]
     >>> cage = plan(triangle, [[0.5, 0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]])
     >>> cage
-    <Cage: sigma 0.5 < 0.866025 <= 0.866025 m, 1 grasp>
+    <Cage: sigma 0.5 < 0.866025 <= 0.866025, 1 grasp>
     """
     asked = _asked(case, grasp, finger_radius)
     chosen = _method(method)

@@ -200,7 +200,8 @@ def is_local_minimum(free_space: FreeSpace, here: Configuration, sigma: float) -
 def _has_depth(around: Search, sigma: float) -> bool:
     """Whether a hand of this least sigma must open by more than the depth cut to close further.
 
-    ``around`` is the search up to the cut. A minimum that is less deep does not count. [docs/formats.md, Tolerances]
+    ``around`` is the search up to the cut. A minimum that is less deep does not
+    count. [docs/formats.md, Tolerances]
     """
     if around.escaped:
         return False

@@ -1,8 +1,8 @@
 """The grasp of the same kind for other fingers, or for a slightly different object. Our own.
 
-The hand keeps its shape, its fingers the edges (or corners) that they touch; what changes is how far
-it is open and where it stands. From one radius to another the grasp is followed in as many steps as
-it takes, for a large step may lead the fingers past a neighbouring grasp.
+The hand keeps its shape, its fingers the edges (or corners) that they touch; what changes is how
+far it is open and where it stands. From one radius to another the grasp is followed in as many
+steps as it takes, for a large step may lead the fingers past a neighbouring grasp.
 """
 
 from __future__ import annotations
