@@ -21,6 +21,14 @@ def largest_sigma_in(found: Search) -> float:
     return max(_largest_in_cell(pieces, z, [int(v) for v in row[:3]]) for row in found.nodes)
 
 
+def opens_to(found: Search, level: float) -> bool:
+    """Whether a visited cell holds a hand as wide as ``level``, [unit]."""
+    pieces, z = found.free_space.pieces, found.free_space.hand.z
+    return any(
+        _largest_in_cell(pieces, z, [int(v) for v in row[:3]]) >= level for row in found.nodes
+    )
+
+
 def _corners(pieces: Pieces, k: int) -> ComplexArray:
     v = pieces.slot_vertex[pieces.ptr[k] : pieces.ptr[k + 1]]
     return pieces.x[v] + 1j * pieces.y[v]

@@ -14,7 +14,7 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from icage.cells.free_space import Configuration, FreeSpace, Search, search
 from icage.cells.kernels.tree import births
-from icage.cells.largest_sigma import largest_sigma_in
+from icage.cells.largest_sigma import opens_to
 from icage.errors import GeometryError
 from icage.geometry.exterior import Pieces
 from icage.hand import HandShape
@@ -121,7 +121,7 @@ def find_target(
     value, at = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
     best: Target | None = None
     near: list[Target] = []
-    shut = False
+    shut: Search | None = None
     for k in np.argsort(value[:, 0], kind="stable"):
         if not 0.0 < value[k, 0] < np.inf:
             continue
@@ -143,28 +143,38 @@ def find_target(
             around = search(free_space, cells[k], float(value[k, 0]), stop_above=value[k, 0] + cut)
             if ends is None and not _has_depth(around, float(value[k, 0])):
                 continue
-            shut = _isolated(around, float(value[k, 0]))
+            shut = around if _isolated(around, float(value[k, 0])) else None
             best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
-    return (_not_isolated(free_space, near) or best) if shut else best
+    return best if shut is None else _not_isolated(free_space, near, shut) or best
 
 
 def _isolated(around: Search, sigma: float) -> bool:
     """Whether a hand of this least sigma can do nothing; ``around`` is the search up to the cut."""
-    return around.never_escapes and largest_sigma_in(around) / sigma - 1.0 < NOT_A_CAGE
+    return around.never_escapes and not opens_to(around, sigma * (1.0 + NOT_A_CAGE))
 
 
-def _not_isolated(free_space: FreeSpace, near: list[Target]) -> Target | None:
+def _not_isolated(free_space: FreeSpace, near: list[Target], shut: Search) -> Target | None:
     """The nearest minimum that can open, of the least points of cells.
 
     Where more fingers are held than are needed, rounding of the hand's shape may leave a point of
-    free space behind, shut off from the minimum that it was and lower by a little.
+    free space behind, shut off from the minimum that it was and lower by a little. ``shut`` is the
+    search of that point; whoever lies in it, or in another like it, is not looked at again.
     """
+    seen = _cells_of(shut)
     for target in sorted(near, key=lambda t: (t.moved, t.sigma_0)):
+        if tuple(target.cell.tolist()) in seen:
+            continue
         top = target.sigma_0 + DEPTH_CUT * free_space.pieces.diameter
         around = search(free_space, target.cell, target.sigma_0, stop_above=top)
-        if not _isolated(around, target.sigma_0) and _has_depth(around, target.sigma_0):
+        if _isolated(around, target.sigma_0):
+            seen |= _cells_of(around)
+        elif _has_depth(around, target.sigma_0):
             return replace(target, plateau=plateau_through(free_space, target.at, target.sigma_0))
     return None
+
+
+def _cells_of(found: Search) -> set[tuple[int, ...]]:
+    return {tuple(row) for row in found.nodes[:, :3].tolist()}
 
 
 def _slid_to(
