@@ -18,8 +18,8 @@ import numpy as np
 from scipy.stats import binomtest
 
 from experiments.figures.paper_condition import draw_counterexample
-from icage.cells.paper_condition import ConditionReport, sample_condition
 from icage.formats.case_json import read_case
+from icage.paper_condition import ConditionReport, sample_condition
 from icage.planner import plan
 
 ROOT = Path(__file__).parents[1]

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.figures.drawing.canvas import Canvas, Pixels
-from experiments.figures.drawing.film_page import HEIGHT, MAIN, WIDTH, Page
 from experiments.figures.drawing.hand_view import HandView, window_on
 from experiments.figures.drawing.shapes import tidied
 from experiments.replay.clips import FPS, Clip, clip_alone, clips
+from experiments.replay.film_page import HEIGHT, MAIN, WIDTH, Page
 from experiments.replay.filmed import Filmed
 from experiments.replay.mp4 import write_mp4
 from experiments.replay.run import Replay, Report

@@ -12,7 +12,7 @@ from icage.hand import Placement
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcome, ClosingOutcomes
 from sim.closing.step_check import DIVERGED, Watch
-from sim.grip.contact_forces import finger_forces
+from sim.world.contact_forces import finger_forces
 from sim.world.engine import MjData, mj, no_log
 from sim.world.scene import Scene
 

@@ -15,7 +15,7 @@ from icage.errors import InputError
 from icage.hand import Placement
 from sim.closing.one import data_at
 from sim.closing.step_check import ENDINGS, Watch
-from sim.grip.contact_forces import finger_forces
+from sim.world.contact_forces import finger_forces
 from sim.world.engine import mj, no_log
 from sim.world.scene import Scene
 

@@ -34,7 +34,7 @@ from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
 from icage.errors import InputError
 from sim.closing.one import data_at
-from sim.grip.contact_forces import contacts
+from sim.world.contact_forces import contacts
 from sim.world.engine import mj
 
 _STRIP: Final = 70.0

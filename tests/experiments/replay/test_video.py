@@ -14,14 +14,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from experiments.figures.drawing import film_page
 from experiments.figures.drawing.canvas import Canvas
-from experiments.figures.drawing.film_page import MAIN
 from experiments.figures.drawing.hand_view import window_on
 from experiments.figures.drawing.plots import Level, Plot
 from experiments.io.words import END_WORDS
-from experiments.replay import clips, video
+from experiments.replay import clips, film_page, video
 from experiments.replay.files import VIDEO, regions_by_grasp
+from experiments.replay.film_page import MAIN
 from experiments.replay.filmed import Filmed, filmed_alone, headline
 from experiments.replay.run import Replay, replay
 from experiments.replay.video import SIZE, film, film_alone

@@ -42,7 +42,7 @@ def test_recording_begins_at_the_start_and_ends_in_the_grasp() -> None:
 def test_pressing_fingers_balance_on_the_object() -> None:
     """At rest the contact forces on the object sum to zero, so those on the fingers do too."""
     from sim.closing.one import data_at
-    from sim.grip.contact_forces import finger_forces
+    from sim.world.contact_forces import finger_forces
     from sim.world.engine import mj
 
     scene = GRASP.scene()

@@ -20,8 +20,8 @@ from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import ENDINGS
 from sim.closing.varied import Worlds, expand, mean_distance, own_model, settings
 from sim.closing.varied_shapes import VariedOutcomes, close_varied
-from sim.grip.contact_forces import finger_forces
 from sim.world.config import SimConfig
+from sim.world.contact_forces import finger_forces
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle
 

@@ -7,9 +7,9 @@ import pytest
 import shapely
 
 from icage.cells.membership import VERDICTS, query
-from icage.cells.paper_condition import sample_condition
 from icage.cells.regions import caging_regions
 from icage.formats.case_json import read_case
+from icage.paper_condition import sample_condition
 from icage.planner import plan
 from models import CASES
 
