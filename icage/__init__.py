@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from icage.cage import Cage, GraspMinimum, Puncture
+    from icage.cage import Cage, CageStatus, GraspMinimum, Puncture
     from icage.case import Case
     from icage.errors import IcageError, InputError
     from icage.formats.cage_json import read_cage
@@ -32,6 +32,7 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "Cage": "icage.cage",
+    "CageStatus": "icage.cage",
     "Case": "icage.case",
     "Grasp": "icage.grasp",
     "GraspMinimum": "icage.cage",
@@ -50,6 +51,7 @@ _WHERE = {
 
 __all__ = [
     "Cage",
+    "CageStatus",
     "Case",
     "Grasp",
     "GraspMinimum",

@@ -12,7 +12,7 @@ import shapely
 from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray
-from icage.errors import InputError
+from icage.errors import InputError, PlacementError
 from icage.geometry.way_out import free_from
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
@@ -184,7 +184,13 @@ class Cage(Value):
 
         if isinstance(placements, Placement):
             return query(self, placements.as_array()[None, :])[0]
-        rows = np.asarray(placements, dtype=np.float64)
+        try:
+            rows = np.asarray(placements, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise PlacementError(
+                f"placements are a {type(placements).__name__}; numbers x, y, theta, sigma or rows "
+                "of them are needed"
+            ) from error
         return query(self, rows[None, :])[0] if rows.shape == (4,) else query(self, rows)
 
     def regions(
