@@ -10,7 +10,7 @@ from experiments.io.intervals import wilson
 from experiments.study.inputs.variables import Variable, own_unit
 
 _COUNTS: Final = ("trials", "closed", "target", "near_target")
-"""Of a bin."""
+"""Of a bin; documents of earlier versions lack the last."""
 
 
 def display(one: Variable, unit: str) -> tuple[float, str]:
@@ -56,14 +56,13 @@ def merged(bins: Sequence[Mapping[str, Any]], most: int) -> list[Mapping[str, An
 
 
 def _one(bins: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    trials, closed, target, near = (sum(one[key] for one in bins) for key in _COUNTS)
+    known = [key for key in _COUNTS if all(key in one for one in bins)]
+    counts = {key: sum(one[key] for one in bins) for key in known}
+    trials, closed, target = counts["trials"], counts["closed"], counts["target"]
     return {
         "low": bins[0]["low"],
         "high": bins[-1]["high"],
         "mean": sum(one["mean"] * one["trials"] for one in bins) / trials,
-        "trials": trials,
-        "closed": closed,
-        "target": target,
-        "near_target": near,
+        **counts,
         "rate_95": list(wilson(target, closed)) if closed else None,
     }

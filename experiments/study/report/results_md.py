@@ -86,7 +86,7 @@ def _closed(found: Mapping[str, Any]) -> Iterator[str]:
 
 def _near(found: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:
     """How many ended near the target, and what near is."""
-    if not found["closed"]:
+    if not found["closed"] or "near_target" not in found:  # written by an earlier version
         return
     near, unit = found["near_target"], document["unit"]
     length = near["position"] * document["diameter"]
@@ -146,19 +146,21 @@ def _variable(name: str, one: Mapping[str, Any], unit: str) -> Iterator[str]:
     yield f"`{name}`: {VARIABLES[name].help}."
     yield ""
     factor, shown = display(VARIABLES[name], unit)
+    near = all("near_target" in bin_ for bin_ in one["bins"])  # not so in an earlier version's
+    head = f"{name} [{shown}]" if shown else name
+    last = ("near the target",) if near else ()
     yield from table(
-        (f"{name} [{shown}]" if shown else name, "trials", "closed", "target", "rate of closed",
-         "95 %", "near the target"),
+        (head, "trials", "closed", "target", "rate of closed", "95 %", *last),
         [
             (
                 _range(factor, bin_),
                 *(str(bin_[key]) for key in ("trials", "closed", "target")),
                 *_rate(bin_),
-                str(bin_["near_target"]),
+                *((str(bin_["near_target"]),) if near else ()),
             )
             for bin_ in merged(one["bins"], LONGEST)
         ],
-    )  # fmt: skip
+    )
 
 
 def _rate(bin_: Mapping[str, Any]) -> tuple[str, str]:

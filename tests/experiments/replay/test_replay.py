@@ -115,7 +115,7 @@ def moved_target(cage: Any) -> Any:
 
 def test_a_wrong_grasp_fails_the_run(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     plan = replays.plan
-    monkeypatch.setattr(replays, "plan", lambda *args: moved_target(plan(*args)))
+    monkeypatch.setattr(replays, "plan", lambda *args, **named: moved_target(plan(*args, **named)))
     case = write_case(t_case(), tmp_path / "t.json")
     result = run_command(capsys, case, tmp_path / "out", "--no-video")
     assert result.code == 1
@@ -135,7 +135,7 @@ def some_beside(cage: Any, which: Any, count: int, *rest: Any) -> Starts:
 
 
 def test_an_escape_fails_the_run(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(replays, "draw_starts", some_beside)
+    monkeypatch.setattr("sim.closing.replay.draw_starts", some_beside)
     case = write_case(t_case(), tmp_path / "t.json")
     result = run_command(capsys, case, tmp_path / "out", "--no-video")
     assert result.code == 1

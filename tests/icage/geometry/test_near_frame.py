@@ -85,7 +85,7 @@ def test_a_planted_difference_is_seen() -> None:
     assert moved_targets.off(base, moved, moves[0].scale) < 1e-9
     object.__setattr__(moved, "sigma_first", moved.sigma_first * (1.0 + 1e-8))
     assert moved_targets.off(base, moved, moves[0].scale) > 1e-9
-    object.__setattr__(moved, "verdict", "never_escapes")
+    object.__setattr__(moved, "status", "never_escapes")
     assert moved_targets.off(base, moved, moves[0].scale) == float("inf")
 
 

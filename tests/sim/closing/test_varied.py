@@ -188,7 +188,7 @@ def test_mean_distance_of_a_square_a_rectangle_and_a_disc():
 
 @pytest.mark.parametrize("grasp", [l_shape(), shipped("pliers")], ids=["L", "pliers"])
 def test_mean_distance_of_a_shape_whose_edges_face_the_middle(grasp: KnownGrasp):
-    thing = scene_of(grasp).thing
+    thing = scene_of(grasp).object
     rng = np.random.default_rng(9)
     low, high = thing.vertices.min(axis=0), thing.vertices.max(axis=0)
     points = rng.uniform(low, high, (200_000, 2))

@@ -118,7 +118,7 @@ def whole(name: str, folder: Path) -> tuple[pa.Table, str, str]:
     study = study_of(study_document(first))
     assert study.config == first.config
     table = table_of(study, run_trials(study, np.arange(COUNT)))
-    found = summary(study.config, study.design, table)
+    found = summary(study.config, study.design, table, study.case.outline.diameter)
     stopped = {"early": False, "at": COUNT, "why": "all"}
     document = {**study_document(study), "finished": True, "stopped": stopped, "found": found}
     draw_rates(document, folder / f"{name}.svg")

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.io.intervals import stopped_at
-from experiments.study import run
+from experiments.study.run import shards as run
 from experiments.study.run.folder import StudyFolder
 from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case
