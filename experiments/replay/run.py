@@ -81,6 +81,27 @@ class Replay:
         return tuple(sentence for run in self.runs for sentence in run_failures(run))
 
 
+def check_discs(cases: Sequence[Case]) -> None:
+    """Refuse point fingers.
+
+    Raises
+    ------
+    InputError:
+        A case has them.
+    """
+    for case in cases:
+        if not case.finger_radius > 0.0:
+            how = (
+                "give --finger-radius R"
+                if case.target is None
+                else "give its outline alone, or its drawing, with --finger-radius R"
+            )
+            raise InputError(
+                f"{case.name}: finger_radius is 0; a simulated hand needs fingers of some radius "
+                f"({how})"
+            )
+
+
 def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: Report) -> Replay:
     """Plan, draw, close and judge every grasp: the guaranteed set, and the rest where there is any.
 
@@ -94,11 +115,7 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
     SamplingError:
         A guaranteed set is too small to be drawn from.
     """
-    for case in cases:
-        if not case.finger_radius > 0.0:
-            raise InputError(
-                f"{case.name}: finger_radius is 0; a simulated hand needs fingers of some radius"
-            )
+    check_discs(cases)
     runs: list[Run] = []
     skipped: list[str] = []
     for number, case in enumerate(cases):
