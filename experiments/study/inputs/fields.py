@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 HELP: Final = {
-    "case": "a case file, a shipped object's name, a drawing (*.svg) or an outline without a grasp, "
-    "for which the best grasp is searched, or a study's TOML file",
+    "case": "a case file, a shipped object's name, a drawing (*.svg) or an outline without a "
+    "grasp, for which the best grasp is searched, or a study's TOML file",
     "grasp": "which of a list of grasps or of a shipped object's grasps, from 1 (default 1)",
     "trials": "how many (default 1000); saltelli rounds its base points up to a power of two",
     "seed": "seed of everything that is drawn (default 0)",
