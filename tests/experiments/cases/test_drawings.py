@@ -81,6 +81,7 @@ def test_cases_and_json_may_not_be_one_file(capsys: pytest.CaptureFixture[str]):
     assert "is the name of a case in --cases c" in here(capsys, *command).error_line()
 
 
+@pytest.mark.slow
 def test_replay_keeps_its_cases_and_can_be_repeated_from_them(
     capsys: pytest.CaptureFixture[str],
 ):
