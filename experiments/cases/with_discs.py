@@ -125,7 +125,7 @@ def physical_case(
     raise DerivedCaseError(
         f"{case.name} has point fingers, and discs find no cage near their grasp "
         f"({reasons[0]}), nor near another of that hand; give the case a finger_radius and a "
-        "target of its own"
+        "target of its own (for a drawing or an outline: --finger-radius R)"
     )
 
 

@@ -1,4 +1,4 @@
-"""``icage escape CASE``: attack the cage in physics, and measure sigma_max."""
+"""``icage escape CASE-or-DRAWING``: attack the cage in physics, and measure sigma_max."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.io.options import add_json, check_output, count, file_name, seed
+from experiments.cases.asked import add_case, case_of
+from experiments.io.options import add_json, check_output, count, seed
 
 
 def add_parser(subparsers: Any) -> None:
@@ -19,9 +20,7 @@ def add_parser(subparsers: Any) -> None:
         "at which opening it gets out. Point fingers become small discs, planned afresh. Exit code "
         "1 if anything escapes below, or the plan's way out does not work above.",
     )
-    parser.add_argument(
-        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
-    )
+    add_case(parser)
     parser.add_argument(
         "--attacks", metavar="N", type=count, default=24, help="attacks a level (default 24)"
     )
@@ -36,15 +35,17 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Attack, write, print the table; 1 if anything did not hold."""
-    from experiments.cases.named import find_case
-
-    case = find_case(args.case)
+    case = case_of(args)
     check_output("--json", args.json, *case.sources)
+    from experiments.cases.chosen import chosen, say_how_to_keep
     from experiments.escape.document import escape_document, escape_table
     from experiments.escape.run import escape  # only now: engine and planner take a second to load
     from experiments.io.progress import stage_bar
     from icage.formats.json_out import write_json
 
+    found = chosen(case, args)
+    say_how_to_keep(found)
+    (case,) = found.cases
     with stage_bar() as report:
         result = escape(case, args.attacks, args.seed, args.threads or 0, report)
     if args.json is not None:

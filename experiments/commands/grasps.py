@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from experiments.cases.asked import add_size
 from experiments.io.options import (
-    UNITS,
     add_json,
     check_output,
     count,
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from icage.case import Case
     from icage.grasps.planned import PlannedGrasps
     from icage.grasps.search import Aim
-
-_WORKERS = 2
 
 PHI_SKETCH = """\
 the hand's angles, P1 = phi_1 and P2 = phi_2, in degrees:
@@ -65,16 +63,7 @@ def add_parser(subparsers: Any) -> None:
         help="radius of the disc "
         "fingers, in the object's unit (the case's own, else 0: point fingers)",
     )
-    parser.add_argument(
-        "--width", type=positive, metavar="W",
-        help="longer side of a drawing, in UNIT (the size the drawing states, if any)",
-    )  # fmt: skip
-    parser.add_argument(
-        "--unit",
-        choices=UNITS,
-        help="unit of a drawing's width and of the answer (the one in which the drawing states "
-        "its size; m if it states none)",
-    )
+    add_size(parser)
     parser.add_argument(
         "--phi",
         type=number,
@@ -111,36 +100,52 @@ def add_parser(subparsers: Any) -> None:
         metavar="S",
         help="seed of the search's random moves (0)",
     )
+    parser.add_argument(
+        "--cases",
+        metavar="DIR",
+        type=file_name,
+        help="write each grasp listed as a case file: DIR/1.json, DIR/2.json, ...",
+    )
     add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Search, plan the winners, list them."""
     from dataclasses import replace
+    from pathlib import Path
 
-    from experiments.cases.named import find_object
+    from experiments.cases.case_files import LISTED, check_case_files
+    from experiments.cases.chosen import check_radius
     from icage.errors import InputError
     from icage.formats.json_out import write_json
+    from icage.formats.load import load_object
 
-    case = find_object(args.object, args.width, args.unit)
+    case = load_object(args.object, width=args.width, unit=args.unit)
     check_output("--json", args.json, *case.sources)
-    radius = case.finger_radius if args.finger_radius is None else args.finger_radius
-    if radius > case.outline.diameter:
-        raise InputError(
-            f"--finger-radius {radius:g}: the object's diameter is {case.outline.diameter:g}"
-        )
+    if args.finger_radius is not None:
+        case = replace(case, finger_radius=args.finger_radius)
+    radius = case.finger_radius
+    check_radius(case)
+    if args.cases is not None:
+        names = [LISTED.format(k) for k in range(1, args.top + 1)]
+        check_case_files("--cases", Path(args.cases), names, case.sources)
+        if args.json not in (None, "-") and Path(args.json).resolve() in {
+            (Path(args.cases) / name).resolve() for name in names
+        }:
+            raise InputError(f"--json {args.json!r} is the name of a case in --cases {args.cases}")
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
     if args.phi is not None and args.within is None:
         planned = _of_one_hand(case, radius, args.phi, args.aim)
     else:
-        planned = _best(replace(case, finger_radius=radius, target=None), args)
+        planned = _best(case, args)
     cages = planned.cages[: args.top]
     _tell(planned)
     document = {
         "format": "icage-grasps/1",
         "name": case.name,
         "unit": case.unit,
+        "outline": {"vertices": case.outline.vertices},
         "finger_radius": radius,
         "aim": args.aim,
         "grasps": [_entry(cage, args.aim) for cage in cages],
@@ -148,11 +153,38 @@ def run(args: argparse.Namespace) -> int:
         "triples_left_out": planned.triples_left_out,
         "searches_broken_off": planned.searches_broken_off,
     }
+    if args.cases is not None:
+        _write_cases(case, cages, args)
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
         _print(case, radius, cages, args.aim)
+        if args.cases is not None and cages:
+            print(f"cases in {args.cases}: 1.json to {len(cages)}.json")
     return 0
+
+
+def _write_cases(case: Case, cages: tuple[Cage, ...], args: argparse.Namespace) -> None:
+    """All of them, or none."""
+    import shlex
+    from pathlib import Path
+
+    from experiments.cases.case_files import LISTED, earlier_case_files, write_case_files
+    from experiments.cases.chosen import Chosen, cases_from, search_command
+    from experiments.io.whole_folder import whole_folder
+
+    command = search_command(case, args, args.object)
+    if args.phi is not None:
+        command += f" --phi {args.phi[0]!r} {args.phi[1]!r}"
+    for option, default in (("within", None), ("aim", "first"), ("corners", 0), ("seed", 0)):
+        if getattr(args, option) != default:
+            command += f" --{option} {shlex.quote(str(getattr(args, option)))}"
+    folder = Path(args.cases)
+    found = Chosen(cases_from(case, cages), command)
+    names = {LISTED.format(k) for k in range(1, len(cages) + 1)}
+    earlier = earlier_case_files(folder, LISTED, case.sources)
+    with whole_folder(folder, sorted({*names, *earlier})) as staging:
+        write_case_files(found, staging, LISTED)
 
 
 def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
@@ -162,6 +194,7 @@ def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
 
     import numpy as np
 
+    from experiments.cases.chosen import WORKERS
     from experiments.io.progress import stage_bar
     from icage.grasps.of_case import best_of_case
     from icage.grasps.search import Wanted
@@ -172,7 +205,7 @@ def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
         HandShape.from_angles_deg(*args.phi)  # says what is wrong with the angles
         near = (radians(args.phi[0]), radians(args.phi[1]), radians(args.within))
     wanted, rng = Wanted(args.aim, args.corners, near), np.random.default_rng(args.seed)
-    workers = min(_WORKERS, os.cpu_count() or 1)
+    workers = min(WORKERS, os.cpu_count() or 1)
     with stage_bar() as progress:
         return best_of_case(case, args.top, wanted, rng, workers, progress)
 
@@ -224,7 +257,7 @@ def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
 
 
 def _print(case: Case, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
-    from experiments.cases.named import size_words
+    from experiments.cases.asked import size_words
     from icage.grasps.planned import score
 
     print(

@@ -42,9 +42,10 @@ def run(args: argparse.Namespace) -> int:
     """Read the drawing and write its vertices."""
     from pathlib import Path
 
-    from experiments.cases.named import read_drawing, size_words
+    from experiments.cases.asked import size_words
     from icage.formats.case_json import FORMAT
     from icage.formats.json_out import write_json
+    from icage.formats.load import read_drawing
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)

@@ -1,4 +1,4 @@
-"""``icage plan CASE``: the cage of a target grasp."""
+"""``icage plan CASE-or-DRAWING``: the cage of a target grasp."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.io.options import add_json, check_output, file_name, same
+from experiments.cases.asked import add_case, case_of
+from experiments.io.options import add_json, check_output, same
 
 METHODS = ("cells", "contact-space", "both")
 
@@ -21,9 +22,7 @@ def add_parser(subparsers: Any) -> None:
         "may be; the JSON has each from inside and from outside (`bound`). The inner one is on the "
         "safe side: draw that one, as --figure does.",
     )
-    parser.add_argument(
-        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
-    )
+    add_case(parser)
     add_json(parser)
     parser.add_argument("--figure", metavar="FILE", help="draw the cage into FILE (.svg or .png)")
     parser.add_argument(
@@ -45,12 +44,11 @@ def run(args: argparse.Namespace) -> int:
     """Plan, then write what was asked for."""
     from pathlib import Path
 
-    from experiments.cases.named import find_case
     from icage.errors import InputError
     from icage.formats.json_out import json_text, write_json
     from icage.formats.plan_json import plan_document, plan_summary
 
-    case = find_case(args.case)
+    case = case_of(args)
     check_output("--json", args.json, *case.sources)
     check_output("--figure", args.figure, *case.sources)
     if args.figure is not None and Path(args.figure).suffix.lower() not in (".svg", ".png"):
@@ -60,6 +58,11 @@ def run(args: argparse.Namespace) -> int:
     if args.no_tunnels and args.method != "contact-space":
         raise InputError("--no-tunnels goes with --method contact-space only")
     from experiments.cases.by_methods import planned
+    from experiments.cases.chosen import chosen, say_how_to_keep
+
+    found = chosen(case, args)
+    say_how_to_keep(found)
+    (case,) = found.cases
 
     answer = planned(case, args.method, tunnels=not args.no_tunnels)
     for line in answer.disagreements:

@@ -1,10 +1,11 @@
-"""``icage query CASE PLACEMENTS``: is the object caged by a hand that stands there?"""
+"""``icage query CASE-or-DRAWING PLACEMENTS``: is the object caged by a hand that stands there?"""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
+from experiments.cases.asked import add_case, case_of
 from experiments.io.options import add_json, check_output, file_name
 
 
@@ -18,9 +19,7 @@ def add_parser(subparsers: Any) -> None:
         "before that changes (`margin` and `target_margin` of the JSON: openings, in sigma, and no "
         "room for the hand to stand elsewhere).",
     )
-    parser.add_argument(
-        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
-    )
+    add_case(parser)
     parser.add_argument(
         "placements",
         metavar="PLACEMENTS",
@@ -36,12 +35,11 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.cases.named import find_case
     from icage.errors import InputError
     from icage.formats.json_out import write_json
     from icage.formats.placements_csv import read_placements, read_placements_stream
 
-    case = find_case(args.case)
+    case = case_of(args)
     check_output("--json", args.json, *case.sources, Path(args.placements))
     if args.placements == "-":
         if sys.stdin is None:
@@ -50,10 +48,14 @@ def run(args: argparse.Namespace) -> int:
     else:
         placements = read_placements(Path(args.placements))
 
+    from experiments.cases.chosen import chosen, say_how_to_keep
     from icage.cells.membership import query  # only now: it takes a second to load
     from icage.formats.query_json import query_document, query_summary
     from icage.planner import plan
 
+    found = chosen(case, args)
+    say_how_to_keep(found)
+    (case,) = found.cases
     cage = plan(case.outline, case.contacts, case.finger_radius)
     answers = query(cage, placements)
     if args.json is not None:

@@ -1,17 +1,23 @@
-"""``icage replay NAME-OR-CASE --out DIR``: plan, sample, close, check."""
+"""``icage replay CASE-or-DRAWING --out DIR``: plan, sample, close, check."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from experiments.cases.asked import add_case, case_of
 from experiments.io.options import count, file_name, seed
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from experiments.replay.run import Replay
+    from icage.case import Case
+
+
+GRASPS: Final = 3
+"""Best grasps of a drawing that are replayed."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -24,9 +30,11 @@ def add_parser(subparsers: Any) -> None:
         "and judge where it ended. Exit code 0 only if every guaranteed trial ended in the target "
         "and nothing escaped.",
     )
+    add_case(parser)
     parser.add_argument(
-        "case", metavar="NAME-OR-CASE", type=file_name, help="a shipped object, or a case file"
-    )
+        "--grasps", metavar="K", type=count,
+        help=f"of a drawing or an outline without a grasp: replay its K best grasps ({GRASPS})",
+    )  # fmt: skip
     parser.add_argument(
         "--out", metavar="DIR", type=file_name, required=True,
         help="folder for replay.json, trials.parquet, regions.svg and replay.mp4",
@@ -50,28 +58,52 @@ def run(args: argparse.Namespace) -> int:
     import sys
     from pathlib import Path
 
-    from experiments.cases.named import named
     from experiments.io.options import check_folder
-    from icage.formats.case_json import read_case
+    from icage.errors import InputError
 
-    given = named(args.case)
     folder = Path(args.out)
-    cases = [read_case(path) for path in given.cases]
+    cases, name = _cases(args)
+    searching = cases[0].target is None
+    if args.grasps is not None and not searching:
+        raise InputError(f"--grasps {args.grasps}: {args.case} comes with its grasp; leave it out")
+    count = args.grasps or GRASPS
 
+    from experiments.cases.case_files import (
+        NUMBERED,
+        check_case_files,
+        earlier_case_files,
+        write_case_files,
+    )
+    from experiments.cases.chosen import Chosen, chosen
     from experiments.io.progress import stage_bar
-    from experiments.replay.files import ALL, VIDEO, regions_by_grasp, whole_folder, write_results
-    from experiments.replay.run import replay  # only now: engine and planner take a second to load
+    from experiments.io.whole_folder import whole_folder
+    from experiments.replay.files import ALL, VIDEO, regions_by_grasp, write_results
+    from experiments.replay.run import (  # only now: engine and planner take a second to load
+        check_discs,
+        replay,
+    )
     from icage.sampling import SamplingError
 
-    check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
+    sources = [file for case in cases for file in case.sources]
+    check_folder("--out", folder, ALL, sources)
+    check_discs(cases)
+    if searching:
+        names = [NUMBERED.format(k) for k in range(1, count + 1)]
+        check_case_files("--out", folder, names, sources)
     if args.video:
         from sim.camera.renderer import check_graphics
 
         check_graphics()
-    name = given.shipped or cases[0].name
+    found = chosen(cases[0], args, count) if searching else Chosen(cases)
+    earlier = earlier_case_files(folder, NUMBERED, sources)
+    own = [NUMBERED.format(k) for k in range(1, len(found.cases) + 1)] if searching else []
     try:
-        with whole_folder(folder) as staging, stage_bar() as report:
-            done = replay(cases, args.trials, args.seed, args.threads or 0, report)
+        with (
+            whole_folder(folder, (*ALL, *{*own, *earlier})) as staging,
+            stage_bar() as report,
+        ):
+            write_case_files(found, staging, NUMBERED)
+            done = replay(found.cases, args.trials, args.seed, args.threads or 0, report)
             regions = regions_by_grasp(done, report)
             write_results(done, name, regions, staging)
             if args.video:
@@ -85,6 +117,18 @@ def run(args: argparse.Namespace) -> int:
     for sentence in done.failures:
         print(f"icage: replay failed: {sentence}", file=sys.stderr)
     return 1 if done.failures else 0
+
+
+def _cases(args: argparse.Namespace) -> tuple[tuple[Case, ...], str]:
+    """The cases that are named, and the object's name: all grasps of a shipped object."""
+    from icage.formats.case_json import read_case
+    from icage.formats.load import named
+
+    given = named(args.case)
+    case = case_of(args)  # checks the options that go with it
+    if given.shipped is not None and args.grasp is None:
+        return tuple(read_case(path) for path in given.cases), given.shipped
+    return (case,), given.shipped or case.name
 
 
 _HEAD = (

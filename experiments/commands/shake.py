@@ -1,11 +1,12 @@
-"""``icage shake CASE``: after closing, is the object held?"""
+"""``icage shake CASE-or-DRAWING``: after closing, is the object held?"""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
-from experiments.io.options import add_json, check_output, file_name, seed
+from experiments.cases.asked import add_case, case_of
+from experiments.io.options import add_json, check_output, seed
 
 
 def add_parser(subparsers: Any) -> None:
@@ -18,9 +19,7 @@ def add_parser(subparsers: Any) -> None:
         "closure, and measure the play of a grasp on three edges. Point fingers become discs of "
         "radius 2 % of the diameter. Exit code 1 if the object is not held or a check failed.",
     )
-    parser.add_argument(
-        "case", metavar="CASE", type=file_name, help="case file, or a shipped object's name"
-    )
+    add_case(parser)
     add_json(parser)
     parser.add_argument(
         "--seed", metavar="S", type=seed, default=0, help="seed of all random numbers (0)"
@@ -31,18 +30,21 @@ def run(args: argparse.Namespace) -> int:
     """Close, lock, push, measure; 1 if anything did not hold."""
     import sys
 
-    from experiments.cases.named import find_case
     from icage.formats.json_out import write_json
 
-    case = find_case(args.case)
+    case = case_of(args)
     check_output("--json", args.json, *case.sources)
 
+    from experiments.cases.chosen import chosen, say_how_to_keep
     from experiments.cases.with_discs import (
         physical_case,  # only now: the planner takes time to load
     )
     from experiments.shake.document import shake_document, shake_summary
     from experiments.shake.run import ShakeError, shake_case
 
+    found = chosen(case, args)
+    say_how_to_keep(found)
+    (case,) = found.cases
     try:
         done = shake_case(physical_case(case), args.seed)
     except ShakeError as error:

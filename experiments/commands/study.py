@@ -1,10 +1,11 @@
-"""``icage study CASE --vary NAME=DISTRIBUTION ... --out DIR``: how wrong may everything be?"""
+"""``icage study CASE-or-DRAWING --vary ... --out DIR``: how wrong may everything be?"""
 
 from __future__ import annotations
 
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from experiments.cases.asked import add_case_options
 from experiments.io.options import count, file_name, number, positive, seed
 from experiments.study.inputs.fields import HELP
 
@@ -31,6 +32,7 @@ def add_parser(subparsers: Any) -> None:
         "--case", metavar="CASE", dest="instead", type=file_name,
         help="instead of the case that a TOML file names",
     )  # fmt: skip
+    add_case_options(parser, grasp=False)
     parser.add_argument("--out", metavar="DIR", type=file_name, help="folder for all results")
     parser.add_argument(
         "--vary", metavar="NAME=DIST", action="append", default=[], help=HELP["vary"]
@@ -96,9 +98,10 @@ def run(args: argparse.Namespace) -> int:
 def _given(args: argparse.Namespace) -> dict[str, Any]:
     """The fields that the command line names."""
     from experiments.study.inputs.config import ConfigError
+    from experiments.study.inputs.fields import DRAWING
 
     given: dict[str, Any] = {}
-    names = ("case", "grasp", "trials", "seed", "nominal", *_WORDS, *_POSITIVE)
+    names = ("case", *DRAWING, "grasp", "trials", "seed", "nominal", *_WORDS, *_POSITIVE)
     for name in names:
         value = getattr(args, name)
         if value is not None:

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from experiments.cases.named import find_case
+from icage.formats.load import load
 from icage.formats.picture import cage_picture, way_out_picture
 from icage.formats.whole_files import whole_file
 from icage.planner import plan
@@ -22,7 +22,7 @@ WIDTH: Final = 400.0
 
 def main(folder: str) -> None:
     """Plan, draw, write."""
-    cage = plan(find_case(SHOWN))
+    cage = plan(load(SHOWN))
     pictures = {"holds": cage_picture(cage, WIDTH), "opens": way_out_picture(cage, WIDTH)}
     for name, text in pictures.items():
         with whole_file(Path(folder) / f"{name}.svg") as part:

@@ -13,8 +13,9 @@ import pyarrow.parquet as pq
 
 from experiments.io.arrow_table import Table
 from experiments.io.versions import versions
+from experiments.io.whole_folder import whole_folder
 from experiments.regress.measure import Row
-from experiments.replay.files import JSON, TRIALS, trial_table, whole_folder
+from experiments.replay.files import ALL, JSON, TRIALS, trial_table
 from experiments.replay.run import Replay, run_document
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
@@ -51,7 +52,7 @@ def write_records(records: list[Record], seed: int, folder: Path) -> None:
         "versions": versions(),
         "runs": runs,
     }
-    with whole_folder(folder) as staging:
+    with whole_folder(folder, ALL) as staging:
         write_json(document, str(staging / JSON))
         if tables:
             whole = pa.concat_tables(tables).unify_dictionaries()

@@ -1,15 +1,11 @@
 """What a replay leaves behind: replay.json, trials.parquet, regions.svg, replay.mp4.
 
-Everything is written into a hidden folder first and moved into place at the end, so that a run
-that fails or is interrupted leaves nothing behind.
+They are written into a ``whole_folder``, so that a run that fails or is interrupted leaves nothing
+behind.
 """
 
 from __future__ import annotations
 
-import shutil
-import tempfile
-from collections.abc import Generator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,46 +19,12 @@ from experiments.io.versions import versions
 from experiments.replay.run import Replay, Report, Run, run_document
 from icage.cells.membership import VERDICTS, query
 from icage.cells.regions import FingerRegion
-from icage.errors import OutputError
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
 from sim.closing.judge import OUTCOMES
 
 JSON, TRIALS, REGIONS, VIDEO = "replay.json", "trials.parquet", "regions.svg", "replay.mp4"
 ALL: Final = (JSON, TRIALS, REGIONS, VIDEO)
-
-
-@contextmanager
-def whole_folder(folder: Path) -> Generator[Path]:
-    """A place to write files to; they move into ``folder`` together when the block ends well.
-
-    ``folder`` is made if need be. Files of an earlier replay that this one did not write again are
-    removed: they would speak of another run.
-
-    Raises
-    ------
-    OutputError:
-        Nothing can be written there.
-    """
-    made = [part for part in (folder, *folder.parents) if not part.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".replay-", dir=folder))
-    except OSError as error:
-        raise OutputError(f"{str(folder)!r} cannot be written to: {error.strerror}") from error
-    try:
-        yield staging
-        for name in ALL:
-            written = staging / name
-            if written.exists():
-                written.replace(folder / name)
-            else:
-                (folder / name).unlink(missing_ok=True)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-        for part in made:  # deepest first; only while empty
-            if part.is_dir() and not any(part.iterdir()):
-                part.rmdir()
 
 
 def write_results(

@@ -17,11 +17,12 @@ from icage.agreement import disagreements
 from icage.cage import Cage, Puncture
 from icage.case import Case
 from icage.contact_space.method import CONTACT_SPACE
+from icage.errors import InputError
 from icage.planner import plan
 from icage.sampling import SamplingError, Starts, StartSet, has_rest, safe_level
 from sim.closing.judge import OUTCOMES, Verdicts
 from sim.closing.outcome import ClosingOutcomes
-from sim.closing.replay import check_closable, check_radius_for_physics, replay_set
+from sim.closing.replay import check_closable, replay_set
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
@@ -80,6 +81,27 @@ class Replay:
         return tuple(sentence for run in self.runs for sentence in run_failures(run))
 
 
+def check_discs(cases: Sequence[Case]) -> None:
+    """Refuse point fingers.
+
+    Raises
+    ------
+    InputError:
+        A case has them.
+    """
+    for case in cases:
+        if not case.finger_radius > 0.0:
+            how = (
+                "give --finger-radius R"
+                if case.target is None
+                else "give its outline alone, or its drawing, with --finger-radius R"
+            )
+            raise InputError(
+                f"{case.name}: finger_radius is 0; a simulated hand needs fingers of some radius "
+                f"({how})"
+            )
+
+
 def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: Report) -> Replay:
     """Plan, draw, close and judge every grasp: the guaranteed set, and the rest where there is any.
 
@@ -93,8 +115,7 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
     SamplingError:
         A guaranteed set is too small to be drawn from.
     """
-    for case in cases:
-        check_radius_for_physics(case.finger_radius, case.name)
+    check_discs(cases)
     runs: list[Run] = []
     skipped: list[str] = []
     for number, case in enumerate(cases):

@@ -1,11 +1,15 @@
-"""The case file: an outline, a finger radius, a target grasp. Format ``icage-case/1``."""
+"""The case file: an outline, a finger radius, a target grasp. Format ``icage-case/1``.
+
+A plan (``icage-plan/1``) and a list of grasps (``icage-grasps/1``) hold the same and are read, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from icage.case import MAX_NAME, Case
 from icage.errors import CaseError, FormatError, InputError
@@ -17,12 +21,20 @@ from icage.units import UNITS, Unit
 
 FORMAT: Final = "icage-case/1"
 
+PLAN: Final = "icage-plan/1"
+"""A plan: its ``contacts`` are the grasp."""
+
+GRASPS: Final = "icage-grasps/1"
+"""A list: ``grasps[K - 1].contacts`` are grasp K."""
+
+FORMATS: Final = (FORMAT, PLAN, GRASPS)
+
 MAX_BYTES: Final = 10_000_000
 """Largest case file read."""
 
 
-def read_case(path: Path) -> Case:
-    """The case in a JSON file.
+def read_case(path: Path, grasp: int = 1) -> Case:
+    """The case in a JSON file; ``grasp`` (from 1) is which one of a list of grasps.
 
     Raises
     ------
@@ -30,26 +42,90 @@ def read_case(path: Path) -> Case:
         Whatever is wrong with the file, in one line that begins with its path.
     """
     with _told_with(str(path)):
-        return parse_case(read_json(path), path.parent, (path,))
+        return parse_case(read_json(path), path.parent, (path,), grasp)
 
 
-def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = ()) -> Case:
+def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = (), grasp: int = 1) -> Case:
     """The case in parsed JSON; an outline given as a file is looked for in ``folder``.
 
     ``sources`` are the files that the JSON was read from.
     """
     case = an_object(data, "the case")
     found = parse_object(case, folder, sources)
-    grasp = an_object(required(case, "grasp", "the case"), "grasp")
-    contacts = points(required(grasp, "contacts", "grasp"), "grasp.contacts", least=3, most=3)
-    with _told_with("grasp.contacts"):
-        return found.with_grasp(contacts)
+    place, value = _contacts(case, grasp)
+    contacts = points(value, place, least=3, most=3)
+    with _told_with(place):
+        return replace(found.with_grasp(contacts), name=_name_of(case, found.name, grasp))
+
+
+def has_grasp(path: Path) -> bool:
+    """Whether a JSON file means to have a grasp; one misspelt is an error of ``read_case``.
+
+    Raises
+    ------
+    InputError:
+        It is no JSON object.
+    """
+    with _told_with(str(path)):
+        case = an_object(read_json(path), "the case")
+    return case.get("format") != FORMAT or any(key.lower() == "grasp" for key in case)
 
 
 def read_object(path: Path) -> Case:
     """The object in a case file, as a case without a grasp: one that it has is not looked at."""
     with _told_with(str(path)):
         return parse_object(an_object(read_json(path), "the case"), path.parent, (path,))
+
+
+def case_document(case: Case, made_by: str | None = None) -> dict[str, Any]:
+    """A case as ``icage-case/1``; ``made_by`` is the command that found it."""
+    return {
+        "format": FORMAT,
+        "name": case.name,
+        "unit": case.unit,
+        "outline": {"vertices": case.outline.vertices},
+        "finger_radius": case.finger_radius,
+        **({"grasp": {"contacts": case.target}} if case.target is not None else {}),
+        **({"made_by": made_by} if made_by is not None else {}),
+    }
+
+
+def grasp_name(name: str, number: int) -> str:
+    """What grasp ``number`` (from 1) of an object is called.
+
+    >>> grasp_name("wrench", 2)
+    'wrench/2'
+    """
+    end = f"/{number}"
+    return name[: MAX_NAME - len(end)] + end
+
+
+def _contacts(case: dict[str, Any], number: int) -> tuple[str, Any]:
+    """Where the contacts of the grasp stand, and what stands there."""
+    kind = case["format"]
+    if kind == GRASPS:
+        grasps = required(case, "grasps", "the list of grasps")
+        if not isinstance(grasps, list):
+            raise CaseError(f"grasps is {describe(grasps)}; a list is needed")
+        rows = cast("list[object]", grasps)
+        if not 1 <= number <= len(rows):
+            has = f"has grasps 1 to {len(rows)}" if rows else "has no grasps"
+            raise CaseError(f"grasp is {number}; the file {has}")
+        place = f"grasps[{number - 1}]"
+        row = an_object(rows[number - 1], place)
+        return f"{place}.contacts", required(row, "contacts", place)
+    if number != 1:
+        raise CaseError(
+            f"grasp is {number}; a {'plan' if kind == PLAN else 'case'} file has one grasp"
+        )
+    if kind == PLAN:
+        return "contacts", required(case, "contacts", "the plan")
+    grasp = an_object(required(case, "grasp", "the case"), "grasp")
+    return "grasp.contacts", required(grasp, "contacts", "grasp")
+
+
+def _name_of(case: dict[str, Any], name: str, number: int) -> str:
+    return grasp_name(name, number) if case["format"] == GRASPS else name
 
 
 def read_json(path: Path) -> object:
@@ -65,8 +141,9 @@ def read_json(path: Path) -> object:
 
 def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] = ()) -> Case:
     """Everything of a case but the grasp."""
-    if required(case, "format", "the case") != FORMAT:
-        raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed")
+    if required(case, "format", "the case") not in FORMATS:
+        others = " (or a plan or a list of grasps)"
+        raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed{others}")
     name = required(case, "name", "the case")
     if not isinstance(name, str) or not 0 < len(name) <= MAX_NAME or not name.isprintable():
         raise CaseError(

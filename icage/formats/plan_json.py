@@ -20,6 +20,7 @@ def plan_document(
         "name": name,
         "unit": unit,
         "diameter": cage.outline.diameter,
+        "outline": {"vertices": cage.outline.vertices},
         "finger_radius": cage.finger_radius,
         "hand": {"phi_deg": cage.hand.phi_deg, "unit_fingers": cage.hand.unit_fingers},
         "verdict": cage.status,

@@ -43,6 +43,7 @@ def best_of_case(
         planned,
         triples_left_out=found.triples_left_out,
         searches_broken_off=found.broken_off,
+        compared=len(found.candidates),
     )
 
 

@@ -41,6 +41,8 @@ class PlannedGrasps:
     """Triples of contacts that the search did not draw, at random."""
     searches_broken_off: int = 0
     """Candidates whose search of the free space was too large."""
+    compared: int = 0
+    """Candidates that the search has ranked."""
 
     def reasons(self) -> list[tuple[str, int]]:
         """Reasons of the failures with their numbers, the commonest first."""

@@ -111,17 +111,13 @@ def replay(
 
 def check_closable(cage: Cage, name: str) -> None:
     """Refuse what physics cannot close: point fingers, and contacts that hold nothing."""
-    check_radius_for_physics(cage.finger_radius, name)
+    if not cage.finger_radius > 0.0:
+        raise InputError(
+            f"{name}: finger_radius is 0; a simulated hand needs fingers of some radius "
+            "(icage.regrasp finds the same grasp for a radius)"
+        )
     if cage.status == "not_a_cage":
         raise InputError(f"{name} is not a cage ({cage.why}): there is nothing to replay")
-
-
-def check_radius_for_physics(finger_radius: float, name: str) -> None:
-    """Refuse point fingers."""
-    if not finger_radius > 0.0:
-        raise InputError(
-            f"{name}: finger_radius is 0; a simulated hand needs fingers of some radius"
-        )
 
 
 def replay_set(

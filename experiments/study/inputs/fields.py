@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 HELP: Final = {
-    "case": "a case file, a shipped object's name, or a study's TOML file",
-    "grasp": "which of a shipped object's grasps, from 1 (default 1)",
+    "case": "a case file, a shipped object's name, a drawing (*.svg) or an outline without a "
+    "grasp, for which the best grasp is searched, or a study's TOML file",
+    "grasp": "which of a list of grasps or of a shipped object's grasps, from 1 (default 1)",
     "trials": "how many (default 1000); saltelli rounds its base points up to a power of two",
     "seed": "seed of everything that is drawn (default 0)",
     "starts": "where the hand is meant to stand: guaranteed (uniform in the guaranteed set), cage "
@@ -29,3 +30,6 @@ HELP: Final = {
     "vary": "an uncertain input, e.g. friction=0:0.8 or place_xy=normal:2mm; `--variables` lists "
     "them; as often as there are inputs",
 }
+
+DRAWING: Final = ("width", "unit", "finger_radius")
+"""What goes with a drawing in place of a case: options of the command, and no fields of a study."""

@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from experiments.cases.named import find_case
 from experiments.cases.with_discs import physical_case
+from icage.formats.load import load
 from icage.geometry.contact_types import supports
 from icage.sampling import StartSet, draw_starts
 from sim.closing.quasi_static import CHANGES, compare
@@ -31,7 +31,7 @@ looked at after this and after twice this. (A study has a rule of its own for su
 
 def tables(name: str, trials: int, which: StartSet, seed: int = 0) -> Iterator[str]:
     """Lines of both tables; the friction table only for three-edge targets."""
-    physical = physical_case(find_case(name))
+    physical = physical_case(load(name))
     case, cage = physical.case, physical.cage
     rng = np.random.default_rng(seed)
     starts = draw_starts(cage, which, trials, rng).placements

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import sys
+from argparse import Namespace
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from experiments.cases.named import is_shipped, named
+from experiments.cases.case_files import ONE, check_case_files, write_case_files
+from experiments.cases.chosen import Chosen, chosen
 from experiments.cases.with_discs import physical_case
 from experiments.io.arrow_table import Table
 from experiments.io.options import check_folder
 from experiments.io.progress import stage_bar
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
+from experiments.study.inputs.fields import DRAWING
 from experiments.study.report.summary import sentence, summary
 from experiments.study.run.announcement import announcement, warning
 from experiments.study.run.document import differences, fingerprint, study_document, study_of
@@ -30,7 +33,7 @@ from experiments.study.run.folder import (
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, on_threads, run_study
 from icage.case import Case
-from icage.formats.case_json import read_case
+from icage.formats.load import is_shipped, load
 from icage.formats.whole_files import whole_file
 
 MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
@@ -44,6 +47,8 @@ class Session:
     document: dict[str, Any]
     folder: StudyFolder
     shard: int
+    chosen: Chosen | None = None
+    """The grasp that was searched, for an object that came without one."""
 
 
 def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: int) -> Session:
@@ -58,6 +63,8 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         raise ConfigError("--out DIR is needed")
     path = Path(out)
     table = dict(given)
+    drawing = Namespace(**{name: table.pop(name, None) for name in DRAWING})
+    found: Chosen | None = None
     instead = table.pop("instead", None)
     if "case" in table and table["case"].lower().endswith(".toml"):
         table = _with_file(Path(table.pop("case")), table)
@@ -75,11 +82,20 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
     if old is None and resume and not table.get("case"):
         raise ConfigError(f"--out {out!r} holds no study to go on with")
     if old is not None and not table.get("case"):
+        for name, value in vars(drawing).items():
+            if value is not None:
+                raise ConfigError(f"{name} is given without a CASE; repeat the whole command")
         study = study_of(old, _only_trials(table))
     else:
         if not table.get("case"):
             raise ConfigError("CASE is needed: a case file, a shipped object's name or a TOML file")
-        case = _case(table)
+        case = _case(table, drawing)
+        if case.target is None:
+            check_case_files("--out", path, [ONE], case.sources)
+            drawing.case = table["case"]
+            found = chosen(case, drawing)
+            (case,) = found.cases
+            table["case"] = str(path / ONE)
         physical = physical_case(case)  # point fingers become discs; their radius bounds errors
         study = Study(study_config(table, physical.case), physical.case, physical.cage)
     document = study_document(study)
@@ -94,7 +110,7 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
             f"trials is {study.config.trials}, but --out {out!r} holds {kept} already, and none is "
             f"thrown away; {kept} or more is needed, or another folder"
         )
-    return Session(study, document, folder, shard)
+    return Session(study, document, folder, shard, found)
 
 
 def _only_trials(table: Mapping[str, Any]) -> int | None:
@@ -119,19 +135,13 @@ def _with_file(path: Path, over: Mapping[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def _case(table: Mapping[str, Any]) -> Case:
+def _case(table: Mapping[str, Any], drawing: Namespace | None = None) -> Case:
     name, grasp = table["case"], table.get("grasp", 1)
     if not isinstance(name, str):
         raise ConfigError(f"case is {name!r}; a word is needed")
-    given = named(name)
-    paths = given.cases
-    if given.shipped is not None:
-        if isinstance(grasp, int) and not 1 <= grasp <= len(paths):
-            raise ConfigError(f"grasp is {grasp}; {name} has grasps 1 to {len(paths)}")
-        return read_case(paths[grasp - 1] if isinstance(grasp, int) else paths[0])
-    if grasp != 1:
-        raise ConfigError(f"grasp is {grasp!r}; a case file has one grasp")
-    return read_case(paths[0])
+    which = grasp if isinstance(grasp, int) and not isinstance(grasp, bool) else None
+    options = {} if drawing is None else {key: getattr(drawing, key) for key in DRAWING}
+    return load(name, grasp=None if which == 1 else which, **options)
 
 
 def run_session(
@@ -151,6 +161,8 @@ def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     if doubt is not None:
         print(f"icage: warning: {doubt}", file=sys.stderr, flush=True)
     folder.sweep()
+    if session.chosen is not None:
+        write_case_files(session.chosen, folder.path, ONE)
     write_document({**session.document, "finished": False}, folder.path)
     with stage_bar() as bar:
         table, length = run_study(

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from experiments.cases.named import find_case, find_object, is_shipped, named
 from experiments.environment import ROOT
 from experiments.study.run.session import _case, _with_file
 from icage.errors import InputError
 from icage.formats.case_json import read_case
+from icage.formats.load import is_shipped, load, load_object, named
 from models import case_path, case_paths, grasp_cases, object_names, outline_path
 from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case
@@ -22,7 +22,7 @@ def test_a_shipped_object_is_all_its_grasps_and_its_outline(name: str):
     found = named(name)
     assert (found.shipped, found.cases) == (name, case_paths(name))
     assert found.outline == outline_path(name)
-    assert find_case(name).name == read_case(case_path(name)).name
+    assert load(name).name == read_case(case_path(name)).name
 
 
 @pytest.mark.parametrize("name", list(grasp_cases()))
@@ -32,7 +32,7 @@ def test_a_shipped_grasp_is_a_case_of_its_own(name: str):
     owner, grasp = name.split("/")
     assert found.outline in case_paths(owner)
     assert found.outline.stem == grasp
-    vertices = (one(name).outline.vertices for one in (find_object, find_case))
+    vertices = (one(name).outline.vertices for one in (load_object, load))
     assert np.array_equal(*vertices)
 
 
@@ -45,7 +45,7 @@ def test_a_file_comes_before_a_shipped_name(tmp_path: Path, monkeypatch: pytest.
     for name in ("saw", "pliers/1_best"):
         assert named(name).shipped is None
         assert named(name).cases == (Path(name),)
-        assert find_case(name).name == "T"
+        assert load(name).name == "T"
 
 
 @pytest.mark.parametrize(
@@ -84,8 +84,8 @@ def test_every_command_says_the_same_of_it(
 
 
 def test_a_study_knows_the_same_names(tmp_path: Path):
-    assert _case({"case": "pliers", "grasp": 2}).name == find_case("pliers/2_paper_shape").name
-    assert _case({"case": "pliers/2_paper_shape"}).name == find_case("pliers/2_paper_shape").name
+    assert _case({"case": "pliers", "grasp": 2}).name == load("pliers/2_paper_shape").name
+    assert _case({"case": "pliers/2_paper_shape"}).name == load("pliers/2_paper_shape").name
     with pytest.raises(InputError, match="a case file has one grasp"):
         _case({"case": "pliers/1_best", "grasp": 2})
     file = tmp_path / "study.toml"
@@ -100,12 +100,13 @@ def test_nobody_else_decides_it():
     """Files that look into the models: the one that decides, and two that list what there is."""
     looking = {
         str(path.relative_to(ROOT))
-        for path in (ROOT / "experiments").rglob("*.py")
+        for package in ("icage", "sim", "experiments")
+        for path in (ROOT / package).rglob("*.py")
         if any(word in path.read_text(encoding="utf-8") for word in
                ("object_names", "case_path", "outline_path", "grasp_cases"))
     }  # fmt: skip
     assert looking == {
-        "experiments/cases/named.py",
+        "icage/formats/load.py",
         "experiments/regress/cases.py",
         "experiments/study/ready/__main__.py",
     }

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import shapely
 
-from experiments.cases.named import find_case
 from experiments.cases.with_discs import HandAndObject, PhysicalCase, physical_case
 from experiments.escape.run import attacked
 from experiments.regress.baseline import differences
@@ -24,6 +23,7 @@ from experiments.regress.measure import Planned, Row, in_physics, plan_both
 from experiments.regress.run import one_case
 from experiments.regress.table import bottom_line, markdown, terminal
 from icage.contact_space.method import ContactSpace
+from icage.formats.load import load
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
@@ -38,12 +38,12 @@ PAPER_SHAPE = str(case_paths("pliers")[1])
 @pytest.fixture(scope="module")
 def sound() -> PhysicalCase:
     """The pliers in the paper's hand, as planned."""
-    return physical_case(find_case(PAPER_SHAPE))
+    return physical_case(load(PAPER_SHAPE))
 
 
 @functools.cache
 def planned() -> Planned:
-    return plan_both(find_case(PAPER_SHAPE))
+    return plan_both(load(PAPER_SHAPE))
 
 
 def failures(physical: PhysicalCase, effort: Effort) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ def test_a_sigma_max_off_by_one_percent_is_caught(
 
 
 def test_no_tunnel_edges_are_caught_by_both_methods() -> None:
-    case = find_case(str(CASES / "tunnel_golden.json"))
+    case = load(str(CASES / "tunnel_golden.json"))
     wrong = plan_both(case, ContactSpace(tunnels=False))
     found = checks(Row("tunnel_golden", wrong, 0, CLOSE))
     assert any("the two methods disagree: sigma_max" in line for line in found), found
@@ -93,7 +93,7 @@ def test_no_tunnel_edges_are_caught_by_both_methods() -> None:
 @pytest.mark.slow
 def test_no_tunnel_edges_are_caught_by_physics() -> None:
     """Discs of 0.1 %: larger ones do not fit through the tunnel, and it does not matter."""
-    point = find_case(str(CASES / "tunnel_golden.json"))
+    point = load(str(CASES / "tunnel_golden.json"))
     physical = physical_case(point, radii=[0.001])
     case = physical.case
     wrong = plan(case.outline, case.contacts, case.finger_radius, ContactSpace(tunnels=False))

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from experiments.replay.files import ALL, JSON, VIDEO, whole_folder
+from experiments.io.whole_folder import whole_folder
+from experiments.replay.files import ALL, JSON, VIDEO
 from icage.errors import OutputError
 from icage.formats.whole_files import check_writable, whole_file
 
@@ -37,7 +38,7 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path: Path):
 
 def test_files_of_a_replay_appear_together(tmp_path: Path):
     folder = tmp_path / "a" / "b"
-    with whole_folder(folder) as staging:
+    with whole_folder(folder, ALL) as staging:
         for name in ALL:
             (staging / name).write_text("new")
             assert not (folder / name).exists()
@@ -46,7 +47,7 @@ def test_files_of_a_replay_appear_together(tmp_path: Path):
 
 def test_a_failed_replay_leaves_no_folder_it_made(tmp_path: Path):
     folder = tmp_path / "a" / "b"
-    with contextlib.suppress(RuntimeError), whole_folder(folder) as staging:
+    with contextlib.suppress(RuntimeError), whole_folder(folder, ALL) as staging:
         (staging / JSON).write_text("half")
         raise RuntimeError
     assert not (tmp_path / "a").exists()
@@ -55,7 +56,7 @@ def test_a_failed_replay_leaves_no_folder_it_made(tmp_path: Path):
 def test_a_failed_replay_leaves_an_older_one_as_it_was(tmp_path: Path):
     (tmp_path / JSON).write_text("old")
     (tmp_path / "notes.txt").write_text("mine")
-    with contextlib.suppress(RuntimeError), whole_folder(tmp_path) as staging:
+    with contextlib.suppress(RuntimeError), whole_folder(tmp_path, ALL) as staging:
         (staging / JSON).write_text("half")
         raise RuntimeError
     found = {p.name: p.read_text() for p in tmp_path.iterdir()}
@@ -65,7 +66,7 @@ def test_a_failed_replay_leaves_an_older_one_as_it_was(tmp_path: Path):
 def test_a_film_of_another_run_does_not_stay(tmp_path: Path):
     (tmp_path / VIDEO).write_text("old")
     (tmp_path / "notes.txt").write_text("mine")
-    with whole_folder(tmp_path) as staging:
+    with whole_folder(tmp_path, ALL) as staging:
         (staging / JSON).write_text("new")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["notes.txt", JSON]
 
@@ -142,5 +143,6 @@ def test_a_folder_that_only_looks_writable():
     file = Path("/proc/x.json")
     with pytest.raises(OutputError, match="written: No such file"), whole_file(file) as part:
         part.write_text("new")
-    with pytest.raises(OutputError, match="cannot be written to"), whole_folder(Path("/proc/x")):
+    refused = pytest.raises(OutputError, match="cannot be written to")
+    with refused, whole_folder(Path("/proc/x"), ALL):
         pass
