@@ -13,12 +13,14 @@ from icage.cells.free_space import Search
 from icage.geometry.exterior import Pieces
 
 _INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
+the angle between two edges."""
 
 
 def largest_sigma_in(found: Search) -> float:
     """Largest |w| over all visited cells, [unit]."""
     pieces, z = found.free_space.pieces, found.free_space.hand.z
-    return max(_largest_in_cell(pieces, z, [int(v) for v in row[:3]]) for row in found.nodes)
+    return max(_largest_in_cell(pieces, z, [int(v) for v in row]) for row in found.cells)
 
 
 def _corners(pieces: Pieces, k: int) -> ComplexArray:

@@ -16,7 +16,14 @@ from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
 from icage.geometry.way_out import corners_before_pinch
 from icage.hand import HandShape
 from icage.outline import Outline
-from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import (
+    DEPTH_CUT,
+    DEPTH_FINE,
+    DEPTH_ROUGH,
+    NOT_A_CAGE,
+    TARGET_SHIFT,
+    TARGET_TURN,
+)
 
 __all__ = ["CONTACT_SPACE", "ContactLocalCage", "ContactSpace"]
 
@@ -162,7 +169,7 @@ def _cut_warnings(found: Exploration) -> tuple[str, ...]:
     """Whether sigma_first hangs on the depth below which a minimum does not count."""
     size = found.plane.outline.diameter
     firsts = []
-    for cut in (1e-11, DEPTH_CUT, 1e-6):
+    for cut in (DEPTH_FINE, DEPTH_CUT, DEPTH_ROUGH):
         met = meetings(found, cut * size)
         firsts.append(met[0].sigma if met else found.level)
     if len(set(firsts)) == 1:
