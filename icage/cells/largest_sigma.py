@@ -39,8 +39,9 @@ def _holds(pieces: Pieces, k: int, points: ComplexArray) -> BoolArray:
 
 def _largest_in_cell(pieces: Pieces, z: ComplexArray, cell: list[int]) -> float:
     best = 0.0
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+    fingers = len(z)
+    for i in range(fingers):
+        j, k = (i + 1) % fingers, (i + 2) % fingers
         a, b, c = (_corners(pieces, cell[f]) for f in (i, j, k))
         # fingers i and j at corners
         w = ((b[None, :] - a[:, None]) / (z[j] - z[i])).ravel()
