@@ -96,10 +96,14 @@ def check_contacts(
         _check_pockets(outline, contacts, finger_radius, unit)
 
 
+_TOUCHING = 1e-12
+"""[1] Discs that overlap by this share of their diameter touch: the rounding of two centres."""
+
+
 def _check_sides(contacts: FloatArray, r: float, unit: str) -> None:
     for i, j in ((0, 1), (1, 2), (0, 2)):
         side = float(np.hypot(*(contacts[j] - contacts[i])))
-        if side < 2.0 * r * (1.0 - 1e-12):
+        if side < 2.0 * r * (1.0 - _TOUCHING):
             raise GraspError(
                 f"the discs of fingers {i + 1} and {j + 1} overlap: side {i + 1}-{j + 1} is "
                 f"{side:.9g}{unit}, at least 2 x finger_radius = {2.0 * r:.9g}{unit} is needed"

@@ -22,6 +22,9 @@ from icage.sampling import region_points
 _CHUNK = 20_000
 _MOST_TRIES = 5_000_000
 
+_BELOW_TOP = 1.0 - 1e-9
+"""[1] Hands are drawn this far (relative) below sigma_max: at it the puncture opens."""
+
 
 @dataclass(frozen=True, slots=True)
 class ConditionReport:
@@ -54,7 +57,7 @@ def sample_condition(cage: Cage, count: int, rng: np.random.Generator) -> Condit
     inner = [region.geometry for region in caging_regions(cage) if region.bound == "inner"]
     for geometry in inner:
         shapely.prepare(geometry)
-    top = np.inf if cage.sigma_max is None else cage.sigma_max * (1.0 - 1e-9)
+    top = np.inf if cage.sigma_max is None else cage.sigma_max * _BELOW_TOP
     z = cage.hand.z
     pairs = ((0, 1), (1, 2), (2, 0))
     i, j = min(pairs, key=lambda p: inner[p[0]].area * inner[p[1]].area / abs(z[p[1]] - z[p[0]]))
@@ -71,7 +74,7 @@ def sample_condition(cage: Cage, count: int, rng: np.random.Generator) -> Condit
         rows = np.column_stack([d.real, d.imag, np.angle(w), np.abs(w)])[keep]
         fingers = cage.hand.fingers(rows).reshape(-1, 2)
         depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius)
-        rows = rows[(depth.reshape(-1, 3) <= 0.0).all(axis=1)][: count - have]
+        rows = rows[(depth.reshape(-1, len(z)) <= 0.0).all(axis=1)][: count - have]
         found.append(rows)
         have += len(rows)
     return _judged(cage, np.concatenate(found), tried)

@@ -45,6 +45,9 @@ _GAP = 0.02
 _LEAST_SIGMA = 1.0 - 1e-6
 """[1] The least sigma of a set is that of its minima, known to better than this (relative)."""
 
+_FILLED = 1e-9
+"""[1] The triangles of a region fill it to this share of its area: the rounding of many sums."""
+
 _ROOM = 4e-9
 """[diameter] The outer bounds of regions are noded on a grid of a quarter of this."""
 
@@ -214,7 +217,7 @@ class _Area:
         """Cut a region, holes and all."""
         cut = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
         areas = shapely.area(cut)
-        if not abs(areas.sum() - region.area) <= 1e-9 * region.area:
+        if not abs(areas.sum() - region.area) <= _FILLED * region.area:
             raise GeometryError("the triangles of a caging region do not fill it")
         rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
         return cls(rings[..., 0] + 1j * rings[..., 1], np.cumsum(areas))
@@ -247,6 +250,6 @@ def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:
         inside[:] = answers.in_cage if which == "cage" else answers.in_cage & ~target
     at = np.flatnonzero(inside)
     fingers = cage.hand.fingers(placements[at]).reshape(-1, 2)
-    depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
-    inside[at] = (depth <= 0.0).all(axis=1)
+    depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius)
+    inside[at] = (depth.reshape(-1, len(cage.hand.z)) <= 0.0).all(axis=1)
     return inside

@@ -11,6 +11,12 @@ from typing import Final
 DEPTH_CUT: Final = 1e-10
 """[diameter] A local minimum of sigma counts if it is deeper. [docs/theory.md, Sec. 2.5]"""
 
+DEPTH_FINE: Final = 1e-11
+"""[diameter] If sigma_first is another one with minima this shallow, or ..."""
+
+DEPTH_ROUGH: Final = 1e-6
+"""[diameter] ... only with minima this deep, the plan warns that it hangs on the depth cut."""
+
 MERGE_VERTEX: Final = 3e-10
 """[diameter] Vertices this close to the chord of their neighbours are dropped: far below every
 published figure, far above the rounding of a rotated input, and above SAME_POINT, so that the

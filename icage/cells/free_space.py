@@ -11,8 +11,21 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
-from icage.cells.kernels.facet import MAX_BASE, finger_on_segment
-from icage.cells.kernels.search import CLOSED_IN, ESCAPED, GAVE_UP, explore
+from icage.cells.kernels.columns import (
+    BIRTH_SIGMA,
+    EDGE_FINGER,
+    EDGE_FROM,
+    EDGE_SLOT,
+    EDGE_TO,
+    PASS_SIGMA,
+    PASS_WX,
+    PASS_WY,
+    RECORD_BIRTH,
+    RECORD_LEVEL,
+    Ending,
+)
+from icage.cells.kernels.facet import ends_on_facet
+from icage.cells.kernels.search import explore
 from icage.cells.kernels.tree import births, merge
 from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
@@ -75,27 +88,12 @@ class FreeSpace:
         self, cell: IntArray, finger: int, slot: int, wx: float, wy: float
     ) -> tuple[Configuration, Configuration]:
         """Both ends of the configurations (one, unless a plateau) of least sigma on an edge."""
-        i, j, k = finger, (finger + 1) % 3, (finger + 2) % 3
-        ptr, vertex = self.pieces.ptr, self.pieces.slot_vertex
-        after = slot + 1 if slot + 1 < ptr[cell[i] + 1] else ptr[cell[i]]
-        x_a, y_a, x_b, y_b = finger_on_segment(
-            self.pieces,
-            self.z,
-            i,
-            vertex[slot],
-            vertex[after],
-            j,
-            cell[j],
-            k,
-            cell[k],
-            wx,
-            wy,
-            np.empty((MAX_BASE, 5)),
-        )
+        pieces = np.ascontiguousarray(cell, dtype=np.int64)
+        ends = ends_on_facet(self.pieces, self.z, pieces, finger, slot, wx, wy)
         w = complex(wx, wy)
-        shift = w * self.hand.z[i]
-        first = complex(x_a, y_a) - shift
-        last = complex(x_b, y_b) - shift
+        shift = w * self.hand.z[finger]
+        first = complex(ends.x_lo, ends.y_lo) - shift
+        last = complex(ends.x_hi, ends.y_hi) - shift
         return Configuration(first, w), Configuration(last, w)
 
 
@@ -105,7 +103,7 @@ class Search:
 
     free_space: FreeSpace
     sigma_0: float
-    outcome: int
+    outcome: Ending
     level: float
     """sigma_max, or inf if the hand never escapes."""
     standing: int
@@ -120,19 +118,24 @@ class Search:
     values: IntArray
 
     @property
+    def cells(self) -> IntArray:
+        """(k, fingers) pieces of every node."""
+        return self.nodes[:, : len(self.free_space.z)]
+
+    @property
     def escaped(self) -> bool:
         """Whether a pinched hand was reached."""
-        return self.outcome == ESCAPED
+        return self.outcome == Ending.ESCAPED
 
     @property
     def gave_up(self) -> bool:
         """Whether the search hit its limit of cells."""
-        return self.outcome == GAVE_UP
+        return self.outcome == Ending.GAVE_UP
 
     @property
     def never_escapes(self) -> bool:
         """Whether every cell in reach was visited without a way out."""
-        return self.outcome == CLOSED_IN and self.level == np.inf
+        return self.outcome == Ending.CLOSED_IN and self.level == np.inf
 
     def sigma_first(self, depth: float = DEPTH_CUT) -> float:
         """First level at which a basin deeper than ``depth`` [diameter], or the escape, is met.
@@ -140,15 +143,15 @@ class Search:
         Basins met at the escape level itself belong to the escape, as in ``merge_tree``.
         """
         cut = depth * self.free_space.pieces.diameter
-        before = self.records[:, 0] < below_escape(self)
-        deep = np.flatnonzero(before & (self.records[:, 0] - self.records[:, 1] > cut))
-        return float(self.records[deep[0], 0]) if len(deep) else self.level
+        level, birth = self.records[:, RECORD_LEVEL], self.records[:, RECORD_BIRTH]
+        deep = np.flatnonzero((level < below_escape(self)) & (level - birth > cut))
+        return float(level[deep[0]]) if len(deep) else self.level
 
     def edge_configuration(self, edge: int) -> Configuration:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
-        cell = self.nodes[self.edges[edge, 0], :3]
-        finger, slot = int(self.edges[edge, 2]), int(self.edges[edge, 3])
-        _, wx, wy = self.edge_value[edge]
+        cell = self.cells[self.edges[edge, EDGE_FROM]]
+        finger, slot = int(self.edges[edge, EDGE_FINGER]), int(self.edges[edge, EDGE_SLOT])
+        wx, wy = self.edge_value[edge, PASS_WX], self.edge_value[edge, PASS_WY]
         a, b = self.free_space.on_edge(cell, finger, slot, wx, wy)
         return Configuration(0.5 * (a.d + b.d), a.w)
 
@@ -164,7 +167,9 @@ class Tree:
     parent: IntArray
     stamp: FloatArray
     merges: IntArray
+    """(m, 4) = surviving and swallowed minimum (nodes), edge, ``StartSide``."""
     lows: FloatArray
+    """(m, 2) = level, level - birth of the swallowed minimum."""
 
 
 def search(
@@ -176,11 +181,25 @@ def search(
     limit: int = CELL_LIMIT,
 ) -> Search:
     """Visit the cells around the target's in ascending order of the pass to them."""
-    outcome, level, standing, *arrays = explore(
+    found = explore(
         free_space.pieces, free_space.z, np.asarray(cell, dtype=np.int64), sigma_0,
         free_space.cap, free_space.worst, stop_above, limit,
     )  # fmt: skip
-    return Search(free_space, sigma_0, int(outcome), float(level), int(standing), *arrays)
+    return Search(
+        free_space=free_space,
+        sigma_0=sigma_0,
+        outcome=Ending(found.outcome),
+        level=float(found.level),
+        standing=int(found.standing),
+        nodes=found.nodes,
+        node_level=found.node_level,
+        edges=found.edges,
+        edge_value=found.edge_value,
+        records=found.records,
+        tally=found.tally,
+        keys=found.keys,
+        values=found.values,
+    )
 
 
 def merge_tree(found: Search) -> Tree:
@@ -190,14 +209,21 @@ def merge_tree(found: Search) -> Tree:
     """
     free_space = found.free_space
     inside = inside_cells(found)
-    birth, birth_at = births(
+    born = births(
         free_space.pieces, free_space.z, found.nodes[:inside], free_space.cap, free_space.worst
     )
-    usable = (found.edges[:, 0] < inside) & (found.edges[:, 1] < inside)
+    usable = (found.edges[:, EDGE_FROM] < inside) & (found.edges[:, EDGE_TO] < inside)
     edges = np.where(usable[:, None], found.edges, -1)
-    value = np.where(usable, found.edge_value[:, 0], np.inf)
-    parent, stamp, merges, lows = merge(birth[:, 0], edges, value, below_escape(found))
-    return Tree(birth, birth_at, parent, stamp, merges, lows)
+    value = np.where(usable, found.edge_value[:, PASS_SIGMA], np.inf)
+    joined = merge(born.value[:, BIRTH_SIGMA], edges, value, below_escape(found))
+    return Tree(
+        birth=born.value,
+        birth_at=born.where,
+        parent=joined.parent,
+        stamp=joined.stamp,
+        merges=joined.merges,
+        lows=joined.lows,
+    )
 
 
 def below_escape(found: Search) -> float:

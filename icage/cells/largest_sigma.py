@@ -13,12 +13,14 @@ from icage.cells.free_space import Search
 from icage.geometry.exterior import Pieces
 
 _INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
+the angle between two edges."""
 
 
 def largest_sigma_in(found: Search) -> float:
     """Largest |w| over all visited cells, [unit]."""
     pieces, z = found.free_space.pieces, found.free_space.hand.z
-    return max(_largest_in_cell(pieces, z, [int(v) for v in row[:3]]) for row in found.nodes)
+    return max(_largest_in_cell(pieces, z, [int(v) for v in row]) for row in found.cells)
 
 
 def opens_to(found: Search, level: float) -> bool:
@@ -45,8 +47,9 @@ def _holds(pieces: Pieces, k: int, points: ComplexArray) -> BoolArray:
 
 def _largest_in_cell(pieces: Pieces, z: ComplexArray, cell: list[int]) -> float:
     best = 0.0
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+    fingers = len(z)
+    for i in range(fingers):
+        j, k = (i + 1) % fingers, (i + 2) % fingers
         a, b, c = (_corners(pieces, cell[f]) for f in (i, j, k))
         # fingers i and j at corners
         w = ((b[None, :] - a[:, None]) / (z[j] - z[i])).ravel()

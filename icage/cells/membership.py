@@ -16,12 +16,12 @@ import numpy as np
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.cells.free_space import CELL_LIMIT, FreeSpace, inside_cells
-from icage.cells.kernels.escape import escape_levels, new_memory, shrinkable
+from icage.cells.kernels.escape import Memory, escape_levels, new_memory, shrinkable
 from icage.cells.kernels.tree import find_at
 from icage.cells.work import CageWork, work_of
 from icage.errors import GeometryError, PlacementError
 from icage.geometry.near_frame import NearFrame
-from icage.kernels.locate import build_buckets, cells_of, depth_inside, nodes_of
+from icage.kernels.locate import Buckets, build_buckets, cells_of, depth_inside, nodes_of
 from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
 
@@ -31,6 +31,7 @@ VERDICTS: Final = tuple(one.value for one in PlacementClass)
 TARGET, CAGED, OTHER, ESCAPES, COLLIDES = PlacementCode
 
 _GRID = 96
+"""Squares along a side of the grid of point location."""
 
 _HELD = 1e-12
 """[diameter] A piece holds a finger this far outside it: the rounding of a position."""
@@ -120,8 +121,7 @@ class EscapeLevels:
 
     def __init__(self, free_space: FreeSpace) -> None:
         self._free_space = free_space
-        keys, levels = new_memory()
-        self._memory: tuple[IntArray, FloatArray] = (keys.astype(np.int64), levels)
+        self._memory: Memory = new_memory()
 
     def of(self, cells: IntArray, sigma: FloatArray) -> FloatArray:
         """Escape level (n,) of each cell (n, 3); where it is not above sigma, any such level.
@@ -132,11 +132,10 @@ class EscapeLevels:
             A search met more than ``CELL_LIMIT`` cells.
         """
         free_space = self._free_space
-        levels, known, of_known = escape_levels(
+        levels, self._memory = escape_levels(
             free_space.pieces, free_space.z, cells, sigma, free_space.cap, free_space.worst,
-            CELL_LIMIT, *self._memory,
+            CELL_LIMIT, self._memory,
         )  # fmt: skip
-        self._memory = (np.asarray(known, dtype=np.int64), of_known)
         if np.isnan(levels).any():
             raise GeometryError(f"a search for the escape gave up after {CELL_LIMIT} cells")
         return levels
@@ -147,10 +146,7 @@ class Locator:
     """Point location in the pieces of one free space."""
 
     free_space: FreeSpace
-    low: FloatArray
-    size: float
-    start: IntArray
-    items: IntArray
+    buckets: Buckets
 
     @classmethod
     def of(cls, free_space: FreeSpace) -> Locator:
@@ -159,15 +155,12 @@ class Locator:
         margin = 0.25 * free_space.outline.diameter
         low = ring.min(axis=0) - margin
         size = float((ring.max(axis=0) + margin - low).max()) / _GRID
-        start, items = build_buckets(free_space.pieces, low[0], low[1], size, _GRID)
-        return cls(free_space, low, size, start, items)
+        return cls(free_space, build_buckets(free_space.pieces, low[0], low[1], size, _GRID))
 
     def cells(self, fingers: FloatArray, tolerance: float) -> IntArray:
-        """Pieces of fingers (n, 3, 2) given in the free space's frame; -1 where there is none."""
-        return cells_of(
-            self.free_space.pieces, fingers - self.free_space.origin, self.start, self.items,
-            self.low[0], self.low[1], self.size, _GRID, tolerance,
-        )  # fmt: skip
+        """Pieces (n, f) of fingers (n, f, 2) in the free space's frame; -1 where there is none."""
+        at = fingers - self.free_space.origin
+        return cells_of(self.free_space.pieces, at, self.buckets, tolerance)
 
 
 def query(cage: Cage, placements: FloatArray) -> Answers:
@@ -200,7 +193,9 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     in_cage = np.zeros(len(rows), dtype=np.bool_)
     nodes = np.full(len(rows), -1, dtype=np.int64)
     found = (
-        np.full((len(rows), 3), -1) if work is None else _locator(work).cells(fingers, _HELD * size)
+        np.full(fingers.shape[:2], -1)
+        if work is None
+        else _locator(work).cells(fingers, _HELD * size)
     )
     collides = _collides(cage, frame, fingers, found >= 0)
     verdict[collides] = COLLIDES

@@ -16,7 +16,7 @@ from icage.errors import GeometryError
 from icage.geometry.statics import ISOLATED, no_depth_reason
 from icage.hand import HandShape
 from icage.outline import Outline
-from icage.tolerance import DEPTH_CUT, NOT_A_CAGE
+from icage.tolerance import DEPTH_CUT, DEPTH_FINE, DEPTH_ROUGH, NOT_A_CAGE
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +134,8 @@ def cage_on(
 
 def _cut_warnings(tree: Tree, escape: float, size: float) -> tuple[str, ...]:
     """Whether sigma_first hangs on the depth below which a minimum does not count."""
-    fine = first_joining(tree, 1e-11 * size, escape)
-    rough = first_joining(tree, 1e-6 * size, escape)
+    fine = first_joining(tree, DEPTH_FINE * size, escape)
+    rough = first_joining(tree, DEPTH_ROUGH * size, escape)
     chosen = first_joining(tree, DEPTH_CUT * size, escape)
     if fine == rough == chosen:
         return ()

@@ -9,6 +9,7 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
+from icage.cells.kernels.columns import EDGE_FROM, NODE_EDGE, PASS_SIGMA, StartSide
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
 from icage.geometry.way_out import corners_before_pinch
@@ -37,8 +38,9 @@ def joinings(tree: Tree, depth_cut: float) -> list[Joining]:
         kept = members.pop(keep, [keep])
         lost = members.pop(lose, [lose])
         if depth > depth_cut:
-            if side:
-                met.append(Joining(level, edge, tuple(kept if side == 1 else lost)))
+            if side != StartSide.NEITHER:
+                other = kept if side == StartSide.SWALLOWED else lost
+                met.append(Joining(level, edge, tuple(other)))
             members[keep] = kept + lost
         else:
             # a shallow minimum holds no other: had it swallowed one, it would be deeper still
@@ -103,7 +105,7 @@ def _grasp(
 ) -> GraspMinimum:
     sigma, wx, wy = tree.birth[node].tolist()
     finger, slot = tree.birth_at[node].tolist()
-    a, b = free_space.on_edge(found.nodes[node, :3], finger, slot, wx, wy)
+    a, b = free_space.on_edge(found.cells[node], finger, slot, wx, wy)
     here = Configuration(0.5 * (a.d + b.d), a.w)
     plateau = plateau_through(free_space, here, sigma)
     contacts = free_space.contacts(here)
@@ -154,7 +156,7 @@ def _intermediate(found: Search, met: list[Joining], ids: dict[int, int]) -> lis
 def escape_edge(found: Search) -> int:
     """The pass of the escape puncture: the first one above all those before the pinched hand."""
     path = path_edges(found)
-    high = found.edge_value[path, 0]
+    high = found.edge_value[path, PASS_SIGMA]
     return path[int(np.argmax(high >= below_escape(found)))]
 
 
@@ -162,9 +164,9 @@ def path_edges(found: Search) -> list[int]:
     """Edges from the target's cell to the pinched one, in order."""
     edges: list[int] = []
     node = len(found.nodes) - 1
-    while found.nodes[node, 3] >= 0:
-        edges.append(int(found.nodes[node, 3]))
-        node = int(found.edges[edges[-1], 0])
+    while found.nodes[node, NODE_EDGE] >= 0:
+        edges.append(int(found.nodes[node, NODE_EDGE]))
+        node = int(found.edges[edges[-1], EDGE_FROM])
     return edges[::-1]
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage
 from icage.cells.free_space import FreeSpace
+from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BIRTH_WY, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.region import all_sandwiches, least_points
 from icage.cells.work import CageWork, work_of
 from icage.errors import InputError
@@ -39,6 +40,10 @@ _SLACK = 1e-7
 """[diameter] A set that another covers but for this is left out."""
 _GRID = 1e-9
 """[diameter] Neighbouring cells meet on a common edge: unions are noded on this grid."""
+_FINEST_GRID = 1e-14
+"""[diameter] No grid is finer: below it there is only the rounding of coordinates."""
+_GRID_SHARE = 1e-3
+"""[1] A grid moves a boundary by less than this share of the gap that is asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +64,7 @@ class FingerRegion:
 def caging_regions(
     cage: Cage, level: float | None = None, gap: float = 1e-3
 ) -> tuple[FingerRegion, ...]:
-    """Inner and outer bounds of the regions of the three fingers (six entries, inner first).
+    """Inner and outer bounds of the regions of all fingers (two for each, inner first).
 
     Parameters
     ----------
@@ -82,7 +87,7 @@ def caging_regions(
     name = _level_name(cage, chosen)
     regions: list[FingerRegion] = []
     back = NearFrame.of(cage.outline).back
-    for finger in range(3):
+    for finger in range(len(cage.hand.z)):
         *bounds, found = _bounds(work, finger, below, gap)
         inner, outer = (shapely.transform(bound, back) for bound in bounds)
         regions.append(FingerRegion(finger + 1, name, chosen, "inner", found, inner))
@@ -104,7 +109,7 @@ def outer_bounds(
     size = work.search.free_space.pieces.diameter
     bounds: list[shapely.MultiPolygon] = []
     back = NearFrame.of(cage.outline).back
-    for finger in range(3):
+    for finger in range(len(cage.hand.z)):
         nodes, points = _cells_and_points(work, finger, below)
         enough = _first_try(work, finger, below, gap, nodes, points)
         _, around = _sandwiches(work, finger, below, enough, nodes, points)
@@ -172,22 +177,24 @@ def _sandwiches(
     """Convex polygons within and around where a finger may be, cell by cell."""
     free_space = work.search.free_space
     slack = _SLACK * free_space.pieces.diameter
-    within, in_counts, around, out_counts = all_sandwiches(
+    found = all_sandwiches(
         free_space.pieces, free_space.z, finger, nodes, points, level, enough, slack
     )
-    return _polygons(within, in_counts), _polygons(around, out_counts)
+    return _polygons(found.inner, found.inner_counts), _polygons(found.outer, found.outer_counts)
 
 
 def _cells_and_points(work: CageWork, finger: int, level: float) -> tuple[IntArray, FloatArray]:
     """Cells of the target's component below the level, and a finger position in each."""
     found, tree = work.search, work.tree
     inside = len(tree.birth)
-    use = np.flatnonzero((found.node_level[:inside] <= level) & (tree.birth[:, 0] < level))
-    cells = np.ascontiguousarray(found.nodes[use, :3])
-    w, at = tree.birth[use, 1:], tree.birth_at[use]
+    use = np.flatnonzero(
+        (found.node_level[:inside] <= level) & (tree.birth[:, BIRTH_SIGMA] < level)
+    )
+    cells = np.ascontiguousarray(found.cells[use])
+    birth, at = tree.birth[use], tree.birth_at[use]
     points = least_points(
         found.free_space.pieces, found.free_space.z, finger, cells,
-        w[:, 0], w[:, 1], at[:, 0].astype(np.int64), at[:, 1].astype(np.int64),
+        birth[:, BIRTH_WX], birth[:, BIRTH_WY], at[:, BORN_FINGER], at[:, BORN_SLOT],
     )  # fmt: skip
     return cells, points
 
@@ -206,7 +213,7 @@ def _grid(polygons: Polygons, gap: float, size: float) -> float:
     length = shapely.length(polygons)
     thickness = shapely.area(polygons)[length > 0.0] / length[length > 0.0]
     thickest = float(thickness.max(initial=0.0))
-    return float(np.clip(1e-3 * gap * thickest, 1e-14 * size, _GRID * size))
+    return float(np.clip(_GRID_SHARE * gap * thickest, _FINEST_GRID * size, _GRID * size))
 
 
 def _union(free_space: FreeSpace, polygons: Polygons, grid: float) -> shapely.MultiPolygon:

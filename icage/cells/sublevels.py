@@ -9,6 +9,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cells.free_space import FreeSpace
+from icage.cells.kernels.columns import LOW_LEVEL, MERGE_LOSE
 from icage.cells.kernels.tree import all_passes, merge
 from icage.errors import InputError
 from icage.hand import HandShape
@@ -35,12 +36,11 @@ def births_and_merges(outline: Outline, hand: HandShape) -> FloatArray:
             f"the outline needs {free_space.pieces.total} pieces; up to {MOST_PIECES} are "
             "allowed here"
         )
-    low, edges, values = all_passes(
-        free_space.pieces, free_space.z, free_space.cap, free_space.worst
-    )
-    _, _, merges, lows = merge(low, edges, values, np.inf)
+    passes = all_passes(free_space.pieces, free_space.z, free_space.cap, free_space.worst)
+    low = passes.births
+    joined = merge(low, passes.edges, passes.values, np.inf)
     ended = np.where(np.isfinite(low), np.inf, -np.inf)
-    ended[merges[:, 1]] = lows[:, 0]
+    ended[joined.merges[:, MERGE_LOSE]] = joined.lows[:, LOW_LEVEL]
     deep = ended - low > DEPTH_CUT * outline.diameter
     kept = np.flatnonzero(deep & (low > 0.0) & np.isfinite(low))
     rows = np.column_stack([low[kept], ended[kept]])

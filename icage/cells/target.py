@@ -13,6 +13,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.cells.free_space import Configuration, FreeSpace, Search, search
+from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BIRTH_WY, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.tree import births
 from icage.cells.largest_sigma import opens_to
 from icage.errors import GeometryError
@@ -122,10 +123,11 @@ def find_target(
     best: Target | None = None
     near: list[Target] = []
     shut: Search | None = None
-    for k in np.argsort(value[:, 0], kind="stable"):
-        if not 0.0 < value[k, 0] < np.inf:
+    for k in np.argsort(value[:, BIRTH_SIGMA], kind="stable"):
+        if not 0.0 < value[k, BIRTH_SIGMA] < np.inf:
             continue
-        ends = free_space.on_edge(cells[k], int(at[k, 0]), int(at[k, 1]), value[k, 1], value[k, 2])
+        finger, slot = int(at[k, BORN_FINGER]), int(at[k, BORN_SLOT])
+        ends = free_space.on_edge(cells[k], finger, slot, value[k, BIRTH_WX], value[k, BIRTH_WY])
         here = nearest_on(ends, wanted)
         if abs(here.w - wanted.w) <= reach * size < abs(here.d - wanted.d):
             # the same hand elsewhere: perhaps on a plateau that runs through where it should be
@@ -134,17 +136,22 @@ def find_target(
         turned = turn_between(wanted, here)
         if moved > reach or turned > turn:
             continue
-        near.append(Target(here, cells[k], float(value[k, 0]), moved, turned, None))
+        near.append(Target(here, cells[k], float(value[k, BIRTH_SIGMA]), moved, turned, None))
         # hundreds of cells may meet in one point, as at the centre of an arc: it is looked at once
         if best is not None and moved >= best.moved - SAME_POINT:
             continue
-        if is_local_minimum(free_space, here, float(value[k, 0])):
-            ends = plateau_through(free_space, here, float(value[k, 0]))
-            around = search(free_space, cells[k], float(value[k, 0]), stop_above=value[k, 0] + cut)
-            if ends is None and not _has_depth(around, float(value[k, 0])):
+        if is_local_minimum(free_space, here, float(value[k, BIRTH_SIGMA])):
+            ends = plateau_through(free_space, here, float(value[k, BIRTH_SIGMA]))
+            around = search(
+                free_space,
+                cells[k],
+                float(value[k, BIRTH_SIGMA]),
+                stop_above=value[k, BIRTH_SIGMA] + cut,
+            )
+            if ends is None and not _has_depth(around, float(value[k, BIRTH_SIGMA])):
                 continue
-            shut = around if _isolated(around, float(value[k, 0])) else None
-            best = Target(here, cells[k], float(value[k, 0]), moved, turned, ends)
+            shut = around if _isolated(around, float(value[k, BIRTH_SIGMA])) else None
+            best = Target(here, cells[k], float(value[k, BIRTH_SIGMA]), moved, turned, ends)
     return best if shut is None else _not_isolated(free_space, near, shut) or best
 
 
@@ -204,7 +211,7 @@ def is_local_minimum(free_space: FreeSpace, here: Configuration, sigma: float) -
     size = free_space.pieces.diameter
     cells = cells_near(free_space, here, SAME_POINT * size)
     value, _ = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
-    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * size)
+    return bool(value[:, BIRTH_SIGMA].min() >= sigma - DEPTH_CUT * size)
 
 
 def _has_depth(around: Search, sigma: float) -> bool:
@@ -219,7 +226,7 @@ def _has_depth(around: Search, sigma: float) -> bool:
     value, _ = births(
         free_space.pieces, free_space.z, around.nodes, free_space.cap, free_space.worst
     )
-    return bool(value[:, 0].min() >= sigma - DEPTH_CUT * free_space.pieces.diameter)
+    return bool(value[:, BIRTH_SIGMA].min() >= sigma - DEPTH_CUT * free_space.pieces.diameter)
 
 
 def plateau_through(
@@ -239,7 +246,7 @@ def plateau_through(
                 free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst
             )
             # beyond the end of a plateau the hand may close further: not a part of it
-            for cell in cells[np.abs(low[:, 0] - sigma) <= DEPTH_CUT * size]:
+            for cell in cells[np.abs(low[:, BIRTH_SIGMA] - sigma) <= DEPTH_CUT * size]:
                 for d in translations(free_space, cell, here.w):
                     if _further(here, ends[1 - side], best, d, PLATEAU * size):
                         best = Configuration(d, here.w)

@@ -6,6 +6,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cells.free_space import Configuration, FreeSpace
+from icage.cells.kernels.columns import BIRTH_SIGMA
 from icage.cells.kernels.tree import births
 from icage.cells.target import cells_near, contacts_as_configuration
 from icage.geometry.statics import ISOLATED, contacts_reason, slide_reason
@@ -18,8 +19,8 @@ def why_not(free_space: FreeSpace, contacts: FloatArray) -> str:
     size = free_space.pieces.diameter
     cells = cells_near(free_space, here, CONTACT_OFF * size)
     if len(cells):
-        value, _ = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
-        reachable = np.isfinite(value[:, 0]).any()
+        born = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
+        reachable = np.isfinite(born.value[:, BIRTH_SIGMA]).any()
     else:
         reachable = False
     if not reachable:

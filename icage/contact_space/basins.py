@@ -9,6 +9,7 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.contact_space.exploration import Exploration, Plane
+from icage.contact_space.kernels.columns import EDGE_TO, HAND, HAND_LEVEL, NODE_SIGMA
 from icage.contact_space.kernels.forest import persistence
 from icage.contact_space.target import ContactTarget
 from icage.geometry.statics import free_fingers
@@ -30,13 +31,15 @@ def below_escape(found: Exploration) -> float:
 
 def meetings(found: Exploration, depth_cut: float) -> list[Meeting]:
     """Merges of the target's basin with basins deeper than ``depth_cut`` [unit], ascending."""
-    births = np.ascontiguousarray(found.nodes[:, 0])
-    values = np.ascontiguousarray(found.hands[:, 0])
-    merges, levels, _ = persistence(births, found.edges, values, below_escape(found))
+    births = np.ascontiguousarray(found.nodes[:, NODE_SIGMA])
+    values = np.ascontiguousarray(found.hands[:, HAND_LEVEL])
+    tree = persistence(births, found.edges, values, below_escape(found))
     counted: dict[int, tuple[int, ...]] = {}
     home = 0  # the elder minimum of the component that holds the start
     met: list[Meeting] = []
-    for (elder, younger, edge), level in zip(merges.tolist(), levels.tolist(), strict=True):
+    for (elder, younger, edge), level in zip(
+        tree.merges.tolist(), tree.levels.tolist(), strict=True
+    ):
         kept = counted.pop(elder, (elder,))
         lost = counted.pop(younger, (younger,))
         deep = level - births[younger] > depth_cut
@@ -78,11 +81,11 @@ def grasps_and_punctures(
             joins = tuple(sorted((*p.joins, *joins)))
             punctures.append(Puncture(p.sigma, p.kind, joins, p.contacts, p.free_fingers))
         else:
-            at = plane.contacts(found.hands[meeting.edge, 1:5])
+            at = plane.contacts(found.hands[meeting.edge, HAND])
             free = free_fingers(plane.outline, at)
             punctures.append(Puncture(meeting.sigma, "intermediate", joins, at, free))
     if found.escaped:
-        at = plane.contacts(found.hands[escape_edge(found), 1:5])
+        at = plane.contacts(found.hands[escape_edge(found), HAND])
         free = free_fingers(plane.outline, at)
         punctures.append(Puncture(found.level, "escape", (), at, free))
     return tuple(grasps), tuple(punctures)
@@ -91,13 +94,13 @@ def grasps_and_punctures(
 def escape_edge(found: Exploration) -> int:
     """The edge of the escape puncture: the first one on the way out at the level of the escape."""
     way = found.way_out()
-    high = found.hands[way, 0] >= below_escape(found)
+    high = found.hands[way, HAND_LEVEL] >= below_escape(found)
     return way[int(np.argmax(high))]
 
 
 def _grasp(found: Exploration, node: int, joined_at: float) -> GraspMinimum:
     plane = found.plane
-    sigma = float(found.nodes[node, 0])
+    sigma = float(found.nodes[node, NODE_SIGMA])
     ends = _valley(found, node, sigma)
     contacts = plane.contacts(0.5 * (ends[0] + ends[1]))
     plateau = None
@@ -112,7 +115,7 @@ def _valley(found: Exploration, node: int, sigma: float) -> FloatArray:
     """Both ends (2, 4) of a minimum: one hand, or a slide through all regions at its level."""
     plane, tie = found.plane, found.plane.space.tie
     _, ends = plane.least(found.regions[node])
-    level = (found.hands[:, 0] <= sigma + tie) & (found.edges[:, 1] >= 0)
+    level = (found.hands[:, HAND_LEVEL] <= sigma + tie) & (found.edges[:, EDGE_TO] >= 0)
     inside, new = {node}, {node}
     neighbours: dict[int, list[int]] = {}
     for a, b in found.edges[level, :2].tolist():
@@ -120,7 +123,7 @@ def _valley(found: Exploration, node: int, sigma: float) -> FloatArray:
         neighbours.setdefault(b, []).append(a)
     while new:
         reached = {b for a in new for b in neighbours.get(a, [])} - inside
-        new = {b for b in reached if found.nodes[b, 0] >= sigma - tie}
+        new = {b for b in reached if found.nodes[b, NODE_SIGMA] >= sigma - tie}
         inside |= new
     all_ends = np.concatenate([ends, *(plane.least(found.regions[r])[1] for r in sorted(inside))])
     return _farthest(plane, all_ends)

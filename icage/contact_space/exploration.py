@@ -9,15 +9,23 @@ import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import SearchLog, SearchStep
-from icage.contact_space.kernels.explore import (
-    CLOSED_IN,
-    ESCAPED,
-    GAVE_UP,
-    PINCH,
-    SEAM,
-    TUNNEL,
-    explore,
+from icage.contact_space.kernels.columns import (
+    ABOVE,
+    BELOW,
+    EDGE_FROM,
+    EDGE_KIND,
+    EDGE_LABEL,
+    END_LOWER,
+    ENTRY_LABEL,
+    HAND_LEVEL,
+    NODE_SIGMA,
+    REGION_EDGE,
+    REGION_PIECE,
+    TUNNEL_BELOW,
+    EdgeKind,
+    Ending,
 )
+from icage.contact_space.kernels.explore import explore
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -50,7 +58,7 @@ class TunnelEdges(NamedTuple):
 
     def downwards(self) -> TunnelEdges:
         """The same edges, to be entered from above only."""
-        above = self.ends[:, 1] == 0
+        above = self.ends[:, END_LOWER] == 0
         return self._replace(keys=self.keys[above], ends=self.ends[above])
 
 
@@ -75,16 +83,15 @@ class Plane:
     def tunnel_edges(self) -> TunnelEdges:
         """All of them, found when first asked for. O(n^2) and O(n) for each candidate."""
         if "tunnels" not in self.remembered:
-            found, hands = all_tunnels(self.space)
-            rows = np.asarray(found, dtype=np.int64)
-            landing = np.flatnonzero(rows[:, 4] >= 0)
+            rows, hands = all_tunnels(self.space)
+            landing = np.flatnonzero(rows[:, TUNNEL_BELOW] >= 0)
             ends = np.concatenate(
                 [
                     np.column_stack([np.arange(len(rows)), np.zeros(len(rows), np.int64)]),
                     np.column_stack([landing, np.ones(len(landing), np.int64)]),
                 ]
             )
-            keys = np.concatenate([self.keys(rows[:, :4]), self.keys(rows[landing, 4:8])])
+            keys = np.concatenate([self.keys(rows[:, ABOVE]), self.keys(rows[landing, BELOW])])
             order = np.argsort(keys, kind="stable")
             self.remembered["tunnels"] = TunnelEdges(keys[order], ends[order], rows, hands)
         return self.remembered["tunnels"]
@@ -106,9 +113,12 @@ class Plane:
         """Least sigma of a region and the hands (2, 4) = d, w at both ends of where it is met."""
         corners = self.corners(region)
         i, j, k = (int(v) for v in region[:3])
-        low, s, u, s_too, u_too = least_of_region(self.space, i, j, k, corners, len(corners))
-        ends = [self.hand_at(region, s, u), self.hand_at(region, s_too, u_too)]
-        return float(low), np.array(ends)
+        least = least_of_region(self.space, i, j, k, corners, len(corners))
+        ends = [
+            self.hand_at(region, least.s, least.u),
+            self.hand_at(region, least.s_too, least.u_too),
+        ]
+        return float(least.sigma), np.array(ends)
 
     def hand_at(self, region: IntArray, s: float, u: float) -> FloatArray:
         """(4,) = d, w (relative to the origin) of fingers i, i + 1 at s, u. [Bunis2018, Eq. (2)]"""
@@ -157,7 +167,7 @@ class Exploration:
     """
 
     plane: Plane
-    outcome: int
+    outcome: Ending
     level: float
     regions: IntArray
     nodes: FloatArray
@@ -171,53 +181,54 @@ class Exploration:
     @property
     def escaped(self) -> bool:
         """Whether a pinched hand was reached; its level is sigma_max."""
-        return self.outcome == ESCAPED
+        return self.outcome == Ending.ESCAPED
 
     @property
     def closed_in(self) -> bool:
         """Whether the open list ran empty: the hand never escapes."""
-        return self.outcome == CLOSED_IN
+        return self.outcome == Ending.CLOSED_IN
 
     def way_out(self) -> list[int]:
         """Edges from the start to the pinched hand, in order; empty if there is none."""
         if not self.escaped or not len(self.edges):
             return []
         way: list[int] = []
-        if self.edges[-1, 3] == PINCH:
+        if self.edges[-1, EDGE_KIND] == EdgeKind.PINCH:
             way.append(len(self.edges) - 1)
-            region = int(self.edges[-1, 0])
+            region = int(self.edges[-1, EDGE_FROM])
         else:
             region = len(self.regions) - 1
-        while self.regions[region, 4] >= 0:
-            way.append(int(self.regions[region, 4]))
-            region = int(self.edges[way[-1], 0])
+        while self.regions[region, REGION_EDGE] >= 0:
+            way.append(int(self.regions[region, REGION_EDGE]))
+            region = int(self.edges[way[-1], EDGE_FROM])
         return way[::-1]
 
     def log(self) -> SearchLog:
         """The nodes in the order in which they were met, and the counters."""
-        steps = [self._step(0, float(self.nodes[0, 0]), "minimum")]
+        steps = [self._step(0, float(self.nodes[0, NODE_SIGMA]), "minimum")]
         for e, (origin, to, _, _) in enumerate(self.edges.tolist()):
-            steps.append(self._step(origin, float(self.hands[e, 0]), self.kind(e)))
-            if to >= 0 and self.regions[to, 4] == e:
-                steps.append(self._step(to, float(self.nodes[to, 0]), "minimum"))
+            steps.append(self._step(origin, float(self.hands[e, HAND_LEVEL]), self.kind(e)))
+            if to >= 0 and self.regions[to, REGION_EDGE] == e:
+                steps.append(self._step(to, float(self.nodes[to, NODE_SIGMA]), "minimum"))
         rectangles = np.unique(self.regions[:, :3], axis=0)
+        crossed = self.edges[:, EDGE_KIND] != EdgeKind.SEAM
         return SearchLog(
             iterations=tuple(steps),
             rectangles_explored=len(rectangles),
             rectangles_total=3 * self.plane.space.edges**2,
-            nodes=len(self.regions) + int((self.entries[:, 1] >= 0).sum()),
-            tunnel_edges_tried=len(np.unique(self.edges[self.edges[:, 3] != SEAM, 2])),
+            nodes=len(self.regions) + int((self.entries[:, ENTRY_LABEL] >= 0).sum()),
+            tunnel_edges_tried=len(np.unique(self.edges[crossed, EDGE_LABEL])),
             tunnel_edges_used=self.tunnels_used,
         )
 
     def kind(self, edge: int) -> str:
         """What an edge crosses: side, diagonal, wall; or tunnel, pinch. See ``SearchStep``."""
         origin, _, label, kind = (int(v) for v in self.edges[edge])
-        if kind != SEAM:
-            return "tunnel" if kind == TUNNEL else "pinch"
+        if kind != EdgeKind.SEAM:
+            return EdgeKind(kind).name.lower()
         if label < FIRST_SLOT:
             return _SIDES
-        slot = int(self.plane.space.ptr[self.regions[origin, 3]]) + label - FIRST_SLOT
+        slot = int(self.plane.space.ptr[self.regions[origin, REGION_PIECE]]) + label - FIRST_SLOT
         return "wall" if self.plane.space.slot_edge[slot] >= 0 else "diagonal"
 
     def _step(self, region: int, sigma: float, kind: str) -> SearchStep:
@@ -247,21 +258,21 @@ def explore_from(
     """
     start = np.asarray(region[:4], dtype=np.int64)
     edges = plane.tunnel_edges() if tunnels else NO_TUNNEL_EDGES
-    outcome, level, regions, nodes, graph, hands, entries, places, left, used = explore(
+    found = explore(
         plane.space, start, *(edges if both_ways else edges.downwards()), stop_above, limit
     )
-    if outcome == GAVE_UP:
+    if found.outcome == Ending.GAVE_UP:
         raise GeometryError(f"the search gave up after {limit} convex regions")
     return Exploration(
         plane=plane,
-        outcome=int(outcome),
-        level=float(level),
-        regions=np.asarray(regions, dtype=np.int64),
-        nodes=nodes,
-        edges=np.asarray(graph, dtype=np.int64),
-        hands=hands,
-        entries=np.asarray(entries, dtype=np.int64),
-        places=places,
-        left=left,
-        tunnels_used=int(used),
+        outcome=Ending(found.outcome),
+        level=float(found.level),
+        regions=found.regions,
+        nodes=found.nodes,
+        edges=found.edges,
+        hands=found.hands,
+        entries=found.entries,
+        places=found.places,
+        left=found.left,
+        tunnels_used=int(found.tunnels_used),
     )

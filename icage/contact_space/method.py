@@ -10,13 +10,30 @@ from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, not_a_cage
 from icage.contact_space.basins import first_level, grasps_and_punctures, meetings
 from icage.contact_space.exploration import Exploration, Plane, explore_from
-from icage.contact_space.kernels.explore import TUNNEL
+from icage.contact_space.kernels.columns import (
+    EDGE_KIND,
+    EDGE_LABEL,
+    EDGE_TO,
+    HAND,
+    HAND_TOO,
+    REGION_PAIR,
+    TUNNEL_KEPT,
+    TUNNEL_PAIR,
+    EdgeKind,
+)
 from icage.contact_space.target import ContactTarget, find_contact_target
 from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
 from icage.geometry.way_out import corners_before_pinch
 from icage.hand import HandShape
 from icage.outline import Outline
-from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import (
+    DEPTH_CUT,
+    DEPTH_FINE,
+    DEPTH_ROUGH,
+    NOT_A_CAGE,
+    TARGET_SHIFT,
+    TARGET_TURN,
+)
 
 __all__ = ["CONTACT_SPACE", "ContactLocalCage", "ContactSpace"]
 
@@ -80,9 +97,9 @@ class ContactLocalCage:
         found, plane = self.found, self.found.plane
         hands = [self.target.hand]
         for e in found.way_out():
-            hands.append(found.hands[e, 1:5])
-            if found.edges[e, 3] == TUNNEL:
-                hands.append(found.hands[e, 5:])
+            hands.append(found.hands[e, HAND])
+            if found.edges[e, EDGE_KIND] == EdgeKind.TUNNEL:
+                hands.append(found.hands[e, HAND_TOO])
         x, y = self._pinched_at(hands[-1])
         corners = [complex(h[2], h[3]) for h in hands]
         corners = corners[: corners_before_pinch(corners, plane.outline.diameter)]
@@ -93,11 +110,11 @@ class ContactLocalCage:
     def _pinched_at(self, last: FloatArray) -> FloatArray:
         """Where the three fingers meet at the end of the way out."""
         found, plane = self.found, self.found.plane
-        if len(found.edges) and found.edges[-1, 1] < 0:
-            row = plane.tunnel_edges().rows[int(found.edges[-1, 2])]
-            return plane.contacts(last)[(int(row[0]) + int(row[8])) % 3]
+        if len(found.edges) and found.edges[-1, EDGE_TO] < 0:
+            row = plane.tunnel_edges().rows[int(found.edges[-1, EDGE_LABEL])]
+            return plane.contacts(last)[(int(row[TUNNEL_PAIR]) + int(row[TUNNEL_KEPT])) % 3]
         _, ends = plane.least(found.regions[-1])
-        return plane.contacts(ends[0])[int(found.regions[-1, 0])]
+        return plane.contacts(ends[0])[int(found.regions[-1, REGION_PAIR])]
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +179,7 @@ def _cut_warnings(found: Exploration) -> tuple[str, ...]:
     """Whether sigma_first hangs on the depth below which a minimum does not count."""
     size = found.plane.outline.diameter
     firsts = []
-    for cut in (1e-11, DEPTH_CUT, 1e-6):
+    for cut in (DEPTH_FINE, DEPTH_CUT, DEPTH_ROUGH):
         met = meetings(found, cut * size)
         firsts.append(met[0].sigma if met else found.level)
     if len(set(firsts)) == 1:

@@ -22,6 +22,9 @@ Kind: TypeAlias = Literal["vertex", "extremum", "escape"]
 _TOUCHES = 1e-9
 """[perimeter] A third finger this close to the boundary is on it."""
 
+_NO_CHANGE = 1e-12
+"""[1] Sigma does not change along an edge if it does by no more than this over its length."""
+
 _SAME = 1e-12
 """[perimeter] Corners of a region this close are one node."""
 
@@ -56,7 +59,7 @@ def lambda_crit(form: ScaleForm, s_1: FloatArray, s_2: FloatArray) -> float | No
     """
     step = form.a @ (s_2 - s_1)
     square = float(step @ step)
-    if square <= 1e-24 * float((s_2 - s_1) @ (s_2 - s_1)):
+    if square <= _NO_CHANGE**2 * float((s_2 - s_1) @ (s_2 - s_1)):
         return None
     return float(-(step @ (form.a @ s_1 + form.b)) / square)
 

@@ -25,6 +25,10 @@ _HAIR, _FAR = 1e-9, 1e3
 """[hand's size] How much wider a cone is taken, how long a line."""
 
 
+_PARALLEL = 1e-9
+"""[1] Normals whose directions span no more than this are one line's."""
+
+
 @dataclass(frozen=True, slots=True)
 class Sector:
     """A sector of one contact, cut off at some distance.
@@ -80,7 +84,7 @@ def concurrency_point(sectors: list[Sector]) -> FloatArray | None:
         n = np.array([s.normals[0] for s in lines])
         across = np.column_stack([-n[:, 1], n[:, 0]])
         rows = np.array([c @ s.contact for c, s in zip(across, lines, strict=True)])
-        if np.linalg.matrix_rank(across, tol=1e-9) < 2:
+        if np.linalg.matrix_rank(across, tol=_PARALLEL) < 2:
             return None
         return np.linalg.lstsq(across, rows, rcond=None)[0]
     vertices = [s for s in sectors if s.vertex]

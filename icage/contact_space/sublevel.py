@@ -14,6 +14,14 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.contact_space.exploration import NO_TUNNEL_EDGES, Plane, TunnelEdges
+from icage.contact_space.kernels.columns import (
+    ABOVE,
+    BELOW,
+    EDGE_TO,
+    HAND_LEVEL,
+    MERGE_YOUNGER,
+    NODE_SIGMA,
+)
 from icage.contact_space.kernels.forest import persistence
 from icage.contact_space.kernels.whole import all_regions, all_seams, hands_at
 from icage.tolerance import DEPTH_CUT
@@ -51,15 +59,14 @@ def sublevels(plane: Plane, *, tunnels: bool = True) -> Sublevels:
     """
     space = plane.space
     regions, nodes, known = all_regions(space)
-    seams, values = all_seams(space, regions, known)
-    edges = np.asarray(seams, dtype=np.int64)
+    edges, values = all_seams(space, regions, known)
     crossed = plane.tunnel_edges() if tunnels else NO_TUNNEL_EDGES
     edges = np.vstack([edges, _ends(plane, crossed, known)])
-    values = np.concatenate([values, crossed.hands[:, 0]])
-    births, rows, values = _with_pinch(nodes[:, 0].copy(), edges, values, space.pinch)
-    merges, levels, _ = persistence(births, rows, values, np.inf)
+    values = np.concatenate([values, crossed.hands[:, HAND_LEVEL]])
+    births, rows, values = _with_pinch(nodes[:, NODE_SIGMA].copy(), edges, values, space.pinch)
+    tree = persistence(births, rows, values, np.inf)
     ended = np.full(len(births), np.inf)
-    ended[merges[:, 1]] = levels
+    ended[tree.merges[:, MERGE_YOUNGER]] = tree.levels
     depth = ended[:-1] - births[:-1]
     kept = np.flatnonzero((depth > DEPTH_CUT * plane.outline.diameter) & (births[:-1] > 0.0))
     kept = kept[np.argsort(births[kept], kind="stable")]
@@ -70,7 +77,7 @@ def sublevels(plane: Plane, *, tunnels: bool = True) -> Sublevels:
 
 def _ends(plane: Plane, crossed: TunnelEdges, known: Mapping[int, int]) -> IntArray:
     """Regions (t, 2) at the upper and the lower end of tunnel edges; -1 = a pinched hand."""
-    above, below = crossed.rows[:, :4], crossed.rows[:, 4:8]
+    above, below = crossed.rows[:, ABOVE], crossed.rows[:, BELOW]
     ends = np.full((len(crossed.rows), 2), -1, dtype=np.int64)
     ends[:, 0] = [known[key] for key in plane.keys(above).tolist()]
     landed = np.flatnonzero(below[:, 0] >= 0)
@@ -87,6 +94,6 @@ def _with_pinch(
     pinched = np.flatnonzero(low == 0.0)
     out = np.column_stack([pinched, np.full(len(pinched), node)])
     rows = edges.copy()
-    rows[rows[:, 1] < 0, 1] = node
+    rows[rows[:, EDGE_TO] < 0, EDGE_TO] = node
     levels = np.concatenate([values, np.zeros(len(pinched))])
     return np.append(low, -1.0), np.vstack([rows, out]), levels

@@ -23,6 +23,9 @@ FEASIBLE: Final = 1e-6
 _ASIDE: Final = 1e-6
 """[1] A hand that comes nearer to an edge by no more than this share of its way moves along it."""
 
+_FINEST: Final = 1e-15
+"""[1] The solver goes on until the opening, of size one, changes in its last place only."""
+
 _SHUT: Final = 1e-3
 """[diameter] A least opening below this holds nothing: no edges are in its way."""
 
@@ -88,7 +91,7 @@ def least_opening(
         jac=slope,
         constraints={"type": "ineq", "fun": outside, "jac": turned},
         method="SLSQP",
-        options={"maxiter": 200, "ftol": 1e-15},
+        options={"maxiter": 200, "ftol": _FINEST},
     )
     if found.status not in _AT_MINIMUM or (matrix @ found.x - level).min() < -FEASIBLE:
         raise NoOpeningError(str(found.message))

@@ -88,4 +88,4 @@ def no_depth_reason(opening: float) -> str:
 def free_fingers(outline: Outline, contacts: FloatArray) -> tuple[int, ...]:
     """Fingers (of 1, 2, 3) that touch nothing."""
     gap = np.atleast_1d(shapely.distance(shapely.points(contacts), outline.polygon.exterior))
-    return tuple(k + 1 for k in range(3) if gap[k] > FREE_FINGER * outline.diameter)
+    return tuple(k + 1 for k in range(len(gap)) if gap[k] > FREE_FINGER * outline.diameter)

@@ -20,6 +20,9 @@ from icage.tolerance import COLLISION, PINCHED
 _ANGLE = 1e-9
 """[rad] A ray this close to the object's rim touches it, which is free."""
 
+_NOTHING = 1e-300
+"""[unit] Keeps a point finger on a vertex from dividing 0 by 0."""
+
 
 def corners_before_pinch(corners: list[complex], size: float) -> int:
     """How many of these w = sigma e^{i theta} [unit] come before the hand is pinched; at least 1.
@@ -90,7 +93,7 @@ def _blocked(outline: Outline, radius: float, fingers: FloatArray) -> tuple[Floa
     angle = first[..., None] + np.concatenate(
         [np.zeros_like(first)[..., None], np.cumsum(turn, axis=-1)[..., :-1]], axis=-1
     )
-    graze = np.arcsin(np.clip(radius / np.maximum(away, radius + 1e-300), 0.0, 1.0))
+    graze = np.arcsin(np.clip(radius / np.maximum(away, radius + _NOTHING), 0.0, 1.0))
     return (angle - graze).min(axis=-1), (angle + graze).max(axis=-1)
 
 

@@ -13,14 +13,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.grasps.kernels.triples import contact_at, feasible_triples
+from icage.grasps.kernels.triples import EDGE, VERTEX, contact_at, feasible_triples
 from icage.outline import Outline
 
 _REACH = 3.0
 """[diameter] Points of concurrency further than this from the object's middle are not looked at:
 lines that meet there are nearly parallel, and such a grasp hardly holds an orientation."""
 
-EDGE, VERTEX = 0, 1
+_CONCAVE = 1e-6
+"""[1] Sine of the turn below which a vertex counts as straight: its double cone is as thin."""
+
+_NO_SUM = 1e-9
+"""[1] What the sum of two unit normals is divided by at least: at a vertex that turns right back it
+is 0 and has no direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +44,7 @@ class Features:
     def contacts(self, triple: IntArray, p: FloatArray) -> FloatArray:
         """Finger positions (3, 2) of a triple of features for a concurrency point P."""
         rows = [contact_at(self.kind[f], self.point[f], self.normal[f], p[0], p[1]) for f in triple]
-        return np.array([row[:2] for row in rows])
+        return np.array([(row.x, row.y) for row in rows])
 
     def allows(self, triple: IntArray, p: FloatArray) -> bool:
         """Whether P lies in the sets of all three features."""
@@ -66,7 +71,7 @@ def features_of(outline: Outline, *, longer_than: float = 0.0) -> Features:
     back = np.roll(tangent, 1, axis=0)
     before = np.roll(inward, 1, axis=0)
     turn = back[:, 0] * tangent[:, 1] - back[:, 1] * tangent[:, 0]
-    concave = np.flatnonzero(turn < -1e-6)
+    concave = np.flatnonzero(turn < -_CONCAVE)
     # a concave corner turns clockwise: its normals run counterclockwise from this edge's to the
     # one before
     low, high = inward[concave], before[concave]
@@ -76,7 +81,7 @@ def features_of(outline: Outline, *, longer_than: float = 0.0) -> Features:
     )
     bound = (cone * a[concave][:, None, :]).sum(axis=2)
     cones = np.concatenate([cone, bound[:, :, None]], axis=2)
-    middle = (low + high) / np.maximum(np.hypot(*(low + high).T), 1e-9)[:, None]
+    middle = (low + high) / np.maximum(np.hypot(*(low + high).T), _NO_SUM)[:, None]
     return Features(
         kind=np.repeat([EDGE, VERTEX, VERTEX], [len(edges), len(concave), len(concave)]),
         index=np.concatenate([edges, concave, concave]),

@@ -12,6 +12,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.cells.free_space import Configuration, FreeSpace
+from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BIRTH_WY, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.search import TIE
 from icage.cells.kernels.tree import lowest_cells
 from icage.cells.target import is_local_minimum, plateau_through
@@ -23,6 +24,10 @@ from icage.tolerance import DEPTH_CUT, SAME_POINT
 
 MOST_PIECES = 250
 """Pieces of the plane beyond which the table of all cells would not fit into 1 GB."""
+
+_SAME_HAND = 1e-7
+"""[diameter] Two hands whose fingers are this close are one: above the rounding of a least point,
+far below the distance of two minima that a depth of DEPTH_CUT can tell apart."""
 
 
 def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
@@ -48,13 +53,14 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
             "simplify it"
         )
     size = pieces.diameter
-    cells, low, where = lowest_cells(
+    lowest = lowest_cells(
         pieces, free_space.z, free_space.cap, free_space.worst, TIE * size, DEPTH_CUT * size
     )
     found: list[tuple[float, Configuration]] = []
-    for k in np.argsort(low[:, 0], kind="stable"):
-        here = _least_point(free_space, cells[k], low[k], where[k])
-        sigma = float(low[k, 0])
+    low = lowest.birth
+    for k in np.argsort(low[:, BIRTH_SIGMA], kind="stable"):
+        here = _least_point(free_space, lowest.cells[k], low[k], lowest.birth_at[k])
+        sigma = float(low[k, BIRTH_SIGMA])
         if _known(free_space, here, sigma, found):
             continue
         if is_local_minimum(free_space, here, sigma) and not plateau_through(
@@ -67,7 +73,8 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
 def _least_point(
     free_space: FreeSpace, cell: IntArray, low: FloatArray, where: IntArray
 ) -> Configuration:
-    a, b = free_space.on_edge(cell, int(where[0]), int(where[1]), low[1], low[2])
+    finger, slot = int(where[BORN_FINGER]), int(where[BORN_SLOT])
+    a, b = free_space.on_edge(cell, finger, slot, low[BIRTH_WX], low[BIRTH_WY])
     return Configuration(0.5 * (a.d + b.d), a.w)
 
 
@@ -85,4 +92,4 @@ def _known(
 
 def _same(free_space: FreeSpace, a: Configuration, b: Configuration) -> bool:
     shift = np.abs((a.d - b.d) + (a.w - b.w) * free_space.hand.z).max()
-    return bool(shift <= 1e-7 * free_space.pieces.diameter)
+    return bool(shift <= _SAME_HAND * free_space.pieces.diameter)

@@ -4,16 +4,35 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import hash_slot
 
+_BESIDE = 1e-6
+"""[square] A piece this close to a square of the grid is listed in it too: above the rounding of a
+point's square, however far the grid lies from the origin."""
+
+_HALF_AND_A_BIT = 0.5001
+"""[square] Half a square, and enough to list a piece that only touches it."""
+
+
+class Buckets(NamedTuple):
+    """Pieces that may meet each square of a ``side`` x ``side`` grid, CSR."""
+
+    start: np.ndarray
+    items: np.ndarray
+    low_x: float
+    low_y: float
+    size: float
+    side: int
+
 
 @compiled
 def build_buckets(pieces, low_x, low_y, size, side):
-    """Pieces that may meet each square of a ``side`` x ``side`` grid: (start, items), CSR."""
+    """Pieces that may meet each square of a grid whose corner is (low_x, low_y)."""
     m = len(pieces.ptr) - 1
     counts = np.zeros(side * side + 1, np.int64)
     for fill in range(2):
@@ -34,10 +53,10 @@ def build_buckets(pieces, low_x, low_y, size, side):
                 x1 = max(x1, pieces.x[v])
                 y0 = min(y0, pieces.y[v])
                 y1 = max(y1, pieces.y[v])
-            i0 = max(0, int(math.floor((x0 - low_x) / size - 1e-6)))
-            i1 = min(side - 1, int(math.floor((x1 - low_x) / size + 1e-6)))
-            j0 = max(0, int(math.floor((y0 - low_y) / size - 1e-6)))
-            j1 = min(side - 1, int(math.floor((y1 - low_y) / size + 1e-6)))
+            i0 = max(0, int(math.floor((x0 - low_x) / size - _BESIDE)))
+            i1 = min(side - 1, int(math.floor((x1 - low_x) / size + _BESIDE)))
+            j0 = max(0, int(math.floor((y0 - low_y) / size - _BESIDE)))
+            j1 = min(side - 1, int(math.floor((y1 - low_y) / size + _BESIDE)))
             for i in range(i0, i1 + 1):
                 for j in range(j0, j1 + 1):
                     cx = low_x + (i + 0.5) * size
@@ -48,7 +67,7 @@ def build_buckets(pieces, low_x, low_y, size, side):
                         nx = pieces.normal_x[s]
                         ny = pieces.normal_y[s]
                         gap = nx * (cx - pieces.x[v]) + ny * (cy - pieces.y[v])
-                        if gap < -0.5001 * size * (abs(nx) + abs(ny)):
+                        if gap < -_HALF_AND_A_BIT * size * (abs(nx) + abs(ny)):
                             apart = True
                             break
                     if apart:
@@ -58,7 +77,7 @@ def build_buckets(pieces, low_x, low_y, size, side):
                     else:
                         items[put[i * side + j]] = k
                         put[i * side + j] += 1
-    return start, items
+    return Buckets(start, items, low_x, low_y, size, side)
 
 
 @compiled
@@ -73,18 +92,19 @@ def _slack(pieces, k, x, y):
 
 
 @compiled
-def locate(pieces, start, items, low_x, low_y, size, side, x, y, tolerance):
+def locate(pieces, buckets, x, y, tolerance):
     """Piece that holds (x, y): an index, or -1 if none does to within ``tolerance``."""
-    i = int(math.floor((x - low_x) / size))
-    j = int(math.floor((y - low_y) / size))
+    start, side = buckets.start, buckets.side
+    i = int(math.floor((x - buckets.low_x) / buckets.size))
+    j = int(math.floor((y - buckets.low_y) / buckets.size))
     best = -tolerance
     found = -1
     if 0 <= i < side and 0 <= j < side:
         for at in range(start[i * side + j], start[i * side + j + 1]):
-            gap = _slack(pieces, items[at], x, y)
+            gap = _slack(pieces, buckets.items[at], x, y)
             if gap >= best:
                 best = gap
-                found = items[at]
+                found = buckets.items[at]
         return found
     for k in range(len(pieces.ptr) - 1):
         gap = _slack(pieces, k, x, y)
@@ -95,15 +115,14 @@ def locate(pieces, start, items, low_x, low_y, size, side, x, y, tolerance):
 
 
 @compiled
-def cells_of(pieces, fingers, start, items, low_x, low_y, size, side, tolerance):
-    """Pieces of the three fingers of every placement, (n, 3); -1 where there is none."""
-    cells = np.empty((len(fingers), 3), np.int64)
+def cells_of(pieces, fingers, buckets, tolerance):
+    """Pieces of the fingers (n, f, 2) of every placement, (n, f); -1 where there is none."""
+    cells = np.empty((len(fingers), fingers.shape[1]), np.int64)
     for row in range(len(fingers)):
-        for f in range(3):
+        for f in range(fingers.shape[1]):
             cells[row, f] = locate(
-                pieces, start, items, low_x, low_y, size, side,
-                fingers[row, f, 0], fingers[row, f, 1], tolerance,
-            )  # fmt: skip
+                pieces, buckets, fingers[row, f, 0], fingers[row, f, 1], tolerance
+            )
     return cells
 
 

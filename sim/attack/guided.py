@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -28,6 +29,37 @@ FINE = 2e-3
 
 TURN_LENGTH = 0.5
 """[diameter / rad] A turn by one radian counts as a way of this length."""
+
+_NO_SIZE = 1e-9
+"""[diameter] A hand smaller than this has no direction."""
+
+_AT_STOP = 1e-3
+"""[1] The opening wanted is kept this much (relative) beyond the stop, and from as much before it
+the hand is pressed against it."""
+
+
+class _Spring(NamedTuple):
+    """What leads the object: a spring, its largest force, and how far the carrot waits.
+
+    ``spin`` [diameter^2] is the object's radius of gyration squared, ``slow`` [1] the pace of a
+    carrot that comes again.
+    """
+
+    lag: float
+    stiffness: float
+    force: float
+    spin: float
+    slow: float
+
+
+class _Carrots(NamedTuple):
+    """Where the carrots of N attacks are, a row each; updated but for the pace."""
+
+    pace: FloatArray
+    at: FloatArray
+    waited: FloatArray
+    back_to: FloatArray
+    slow_to: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +130,7 @@ def object_path(scene: Scene, hand_path: FloatArray) -> FloatArray:
         wide = w[k] + share * (w[k + 1] - w[k])
         parts.append(np.column_stack([here.real, here.imag, np.angle(wide), np.abs(wide)]))
     fine = np.concatenate(parts)
-    shut = fine[:, 3] < 1e-9 * size
+    shut = fine[:, 3] < _NO_SIZE * size
     if shut.any():  # a shut hand has no direction: it keeps its last one
         last = int(np.flatnonzero(~shut)[-1])
         fine[last + 1 :, 2] = fine[last, 2]
@@ -160,17 +192,21 @@ class GuidedDriver:
         damping = self.scene.config.object_damping
         goal = np.empty((len(ids), 4))
         lead: Callable[..., None] = _lead
-        lead(
-            ids, qpos, self.path, dt, self._pace, pull.lag, pull.rate * damping,
-            pull.speed * damping, self.scene.object.gyration_squared, self._at, self._waited,
-            self._back_to, self._slow_to, pull.slow, goal, wrench,
-        )  # fmt: skip
+        spring = _Spring(
+            pull.lag,
+            pull.rate * damping,
+            pull.speed * damping,
+            self.scene.object.gyration_squared,
+            pull.slow,
+        )
+        carrots = _Carrots(self._pace, self._at, self._waited, self._back_to, self._slow_to)
+        lead(ids, qpos, self.path, dt, spring, carrots, goal, wrench)
         piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)
         wrench[ids] += self._jitter[ids, piece]
         stop = self.openings[ids]
         wider = np.maximum(stop / self.path[:, 3].max(), 1.0)
-        sigma = np.minimum(goal[:, 3] * wider, stop * (1.0 + 1e-3))
-        sigma = np.where(goal[:, 3] * wider >= stop * (1.0 - 1e-3), stop * PUSH, sigma)
+        sigma = np.minimum(goal[:, 3] * wider, stop * (1.0 + _AT_STOP))
+        sigma = np.where(goal[:, 3] * wider >= stop * (1.0 - _AT_STOP), stop * PUSH, sigma)
         motor[ids] = opening_force(self.scene, sigma, qpos[ids], pull.grip_rate, pull.grip)
         return self._stuck(ids[self._waited[ids] > pull.patience])
 
@@ -193,19 +229,13 @@ def _lead(
     qpos: FloatArray,
     path: FloatArray,
     dt: float,
-    pace: FloatArray,
-    lag: float,
-    stiffness: float,
-    force: float,
-    spin: float,
-    at: FloatArray,
-    waited: FloatArray,
-    back_to: FloatArray,
-    slow_to: FloatArray,
-    slow: float,
+    spring: _Spring,
+    carrots: _Carrots,
     goal: FloatArray,
     wrench: FloatArray,
 ) -> None:  # pragma: no cover - compiled
+    lag, stiffness, force, spin, slow = spring
+    pace, at, waited, back_to, slow_to = carrots
     last = path.shape[0] - 1
     end = path[last, 4]
     for n in range(len(ids)):

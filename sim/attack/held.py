@@ -16,7 +16,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from enum import IntEnum
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
@@ -27,8 +28,43 @@ from sim.world.hand_in_object import depths, fingers_seen, hull_of, separated
 from sim.world.held_hand import held_batch
 from sim.world.scene import Scene
 
-RUNNING, ESCAPED, HELD, DIVERGED = range(4)
-ATTACK_ENDINGS = ("running", "escaped", "held", "diverged")
+
+class AttackCode(IntEnum):
+    """How an attack ended."""
+
+    RUNNING = 0
+    ESCAPED = 1
+    HELD = 2
+    DIVERGED = 3
+
+
+RUNNING, ESCAPED, HELD, DIVERGED = AttackCode
+
+ATTACK_ENDINGS = tuple(code.name.lower() for code in AttackCode)
+"""The words for the codes, in their order: those of files and reports."""
+
+_DEPTH_MAX, _RISE_MAX = range(2)
+"""Columns of what is seen."""
+
+
+class _Shape(NamedTuple):
+    """The object's outline (n, 2), its hull (h, 2) and the fingers, all in diameters."""
+
+    vertices: FloatArray
+    hull: FloatArray
+    radius: float
+    directions: FloatArray
+    coefficients: FloatArray
+
+
+class _Record(NamedTuple):
+    """What is updated, a row each for N attacks; ``openings`` (N,) is read only."""
+
+    openings: FloatArray
+    seen: FloatArray
+    steps: IntArray
+    ending: IntArray
+
 
 LOOK_EVERY = 10
 """[step] How often an escape is looked for; the depth is seen after every step."""
@@ -132,22 +168,16 @@ class AttackMonitor:
         """Look at the attacks ``ids`` after step number ``step``; qpos and qvel are (N, 6)."""
         scene, kinematics = self.scene, self.scene.kinematics
         look: Callable[..., None] = _look
-        look(
-            ids,
-            qpos,
-            qvel,
-            self.openings,
+        shape = _Shape(
             scene.object.vertices,
             self._hull,
             scene.finger_radius / scene.object.diameter,
             kinematics.directions,
             kinematics.tendon_coefficients,
-            SHUT / kinematics.longest_side,
-            step % LOOK_EVERY == 0,
-            self._seen,
-            self.steps,
-            self.ending,
         )
+        record = _Record(self.openings, self._seen, self.steps, self.ending)
+        shut_sigma = SHUT / kinematics.longest_side
+        look(ids, qpos, qvel, shape, record, shut_sigma, step % LOOK_EVERY == 0)
 
     @property
     def running(self) -> IntArray:
@@ -161,8 +191,8 @@ class AttackMonitor:
             self.openings,
             self.ending,
             self.steps,
-            penetration_max=self._seen[:, 0],
-            rise_max=self._seen[:, 1],
+            penetration_max=self._seen[:, _DEPTH_MAX],
+            rise_max=self._seen[:, _RISE_MAX],
             end=end,
         )
 
@@ -213,32 +243,26 @@ def _look(
     ids: IntArray,
     qpos: FloatArray,
     qvel: FloatArray,
-    openings: FloatArray,
-    vertices: FloatArray,
-    hull: FloatArray,
-    radius: float,
-    directions: FloatArray,
-    coefficients: FloatArray,
+    shape: _Shape,
+    record: _Record,
     shut_sigma: float,
     thorough: bool,
-    seen: FloatArray,
-    steps: IntArray,
-    ending: IntArray,
 ) -> None:  # pragma: no cover - compiled
+    seen, ending = record.seen, record.ending
     fingers, depth = np.empty((3, 2)), np.empty(3)
     for i in ids:
-        steps[i] += 1
-        fingers_seen(directions, qpos[i], fingers)
+        record.steps[i] += 1
+        fingers_seen(shape.directions, qpos[i], fingers)
         sigma, total = 0.0, 0.0
         for k in range(3):
-            sigma += coefficients[k] * qpos[i, k]
+            sigma += shape.coefficients[k] * qpos[i, k]
         for k in range(6):
             total += abs(qvel[i, k]) + abs(qpos[i, k])
         if not math.isfinite(total):
             ending[i] = DIVERGED
             continue
-        depths(vertices, fingers, radius, depth)
-        seen[i, 0] = max(seen[i, 0], depth[0], depth[1], depth[2])
-        seen[i, 1] = max(seen[i, 1], sigma / openings[i])
-        if sigma < shut_sigma or (thorough and separated(hull, fingers, radius)):
+        depths(shape.vertices, fingers, shape.radius, depth)
+        seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], depth[0], depth[1], depth[2])
+        seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / record.openings[i])
+        if sigma < shut_sigma or (thorough and separated(shape.hull, fingers, shape.radius)):
             ending[i] = ESCAPED

@@ -15,6 +15,9 @@ from sim.attack.held import ESCAPED, Attacks
 AttackAt = Callable[[FloatArray, np.random.Generator], Attacks]
 """Runs one attack per opening (N,) [diameter]."""
 
+_NO_WIDTH = 1e-12
+"""[1] A window no wider than this (relative) holds no more levels to try."""
+
 
 @dataclass(frozen=True, slots=True)
 class Measured:
@@ -75,7 +78,7 @@ def measure(
             break
         high = least
         low = float(levels[levels < least].max())
-        if not high > low * (1.0 + 1e-12):
+        if not high > low * (1.0 + _NO_WIDTH):
             break
     openings = np.concatenate([run.openings for run in runs])
     escaped = np.concatenate([run.ending == ESCAPED for run in runs])

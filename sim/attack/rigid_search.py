@@ -26,6 +26,9 @@ from sim.world.scene import Scene
 CLEAR = 1e-5
 """[diameter] A finger this deep still counts as clear: poses of the simulator touch."""
 
+_NO_WAY = 1e-9
+"""[diameter] A way shorter than this leads nowhere."""
+
 LOOKS = 6
 """Poses of every step that must be clear."""
 
@@ -72,14 +75,14 @@ def search_tree(
 ) -> TreeSearch:
     """Grow a tree from clear poses (m, 3) until one is separated from the hand, or the bound."""
     bound = pull or TreePull()
-    vertices, fingers, radius = _shape(scene, opening)
+    shape = _shape(scene, opening)
+    vertices, fingers, radius = shape
     reach = float(np.hypot(*fingers.T).max() + np.hypot(*vertices.T).max() + 2.0 * radius)
     samples = rng.uniform(-1.0, 1.0, (bound.samples, 3)) * [reach, reach, math.pi]
     noise = rng.normal(0.0, 0.5, (4096, 3))
     grow: Callable[..., tuple[bool, int]] = _grow
     found = grow(
-        vertices, fingers, radius, hull_of(vertices), starts, samples, noise,
-        0.25 * radius, bound.nodes, bound.hops,
+        shape, hull_of(vertices), starts, samples, noise, 0.25 * radius, bound.nodes, bound.hops,
     )  # fmt: skip
     return TreeSearch(*found)
 
@@ -155,7 +158,7 @@ def _cut(
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
     """A way no longer than the step."""
     length = math.sqrt(x * x + y * y + TURN_LENGTH * TURN_LENGTH * turn * turn)
-    if length < 1e-9:
+    if length < _NO_WAY:
         return 0.0, 0.0, 0.0
     share = min(1.0, step / length)
     return share * x, share * y, share * turn
@@ -163,9 +166,7 @@ def _cut(
 
 @njit(cache=True)
 def _grow(
-    vertices: FloatArray,
-    fingers: FloatArray,
-    radius: float,
+    shape: tuple[FloatArray, FloatArray, float],
     hull: FloatArray,
     starts: FloatArray,
     samples: FloatArray,
@@ -174,6 +175,7 @@ def _grow(
     most: int,
     hops: int,
 ) -> tuple[bool, int]:  # pragma: no cover - compiled
+    vertices, fingers, radius = shape
     tree = np.empty((most, 3))
     count = min(len(starts), most)
     tree[:count] = starts[:count]

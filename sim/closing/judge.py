@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
@@ -19,20 +20,28 @@ from icage.outline import Outline
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import DIVERGED, PINCHED, SETTLED, TIMED_OUT
 
-OUTCOMES = (
-    "target",
-    "other_grasp",
-    "jammed",
-    "escaped",
-    "diverged",
-    "timed_out",
-    "unmatched",
-)
-"""jammed: at rest in no grasp, held by friction. unmatched: at rest without friction, in none of
-the given grasps. From the plan's own cage that means that plan or physics is wrong; from other
-starts, and with another object, hand or gravity than planned, there may be more grasps."""
 
-TARGET, OTHER_GRASP, JAMMED, ESCAPED, DID_DIVERGE, DID_TIME_OUT, UNMATCHED = range(7)
+class OutcomeCode(IntEnum):
+    """Where a closing ended.
+
+    jammed: at rest in no grasp, held by friction. unmatched: at rest without friction, in none of
+    the given grasps. From the plan's own cage that means that plan or physics is wrong; from other
+    starts, and with another object, hand or gravity than planned, there may be more grasps.
+    """
+
+    TARGET = 0
+    OTHER_GRASP = 1
+    JAMMED = 2
+    ESCAPED = 3
+    DIVERGED = 4
+    TIMED_OUT = 5
+    UNMATCHED = 6
+
+
+OUTCOMES = tuple(code.name.lower() for code in OutcomeCode)
+"""The words for the codes, in their order: those of files and reports."""
+
+TARGET, OTHER_GRASP, JAMMED, ESCAPED, DID_DIVERGE, DID_TIME_OUT, UNMATCHED = OutcomeCode
 
 
 class Grasp(Protocol):

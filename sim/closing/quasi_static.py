@@ -102,7 +102,12 @@ class Variant:
     @property
     def same(self) -> bool:
         """Whether no end changed beyond what counts as reaching a grasp (1e-4, 1e-3 rad)."""
-        return self.changed == 0 and self.position <= 1e-4 and self.angle <= 1e-3
+        near = Tolerances()
+        return (
+            self.changed == 0
+            and self.position <= near.target_position
+            and self.angle <= near.target_angle
+        )
 
 
 def compare(

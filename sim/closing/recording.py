@@ -19,6 +19,9 @@ from sim.world.contact_forces import finger_forces
 from sim.world.engine import mj, no_log
 from sim.world.scene import Scene
 
+_WHOLE = 1e-9
+"""[step] Frame times this close to a whole number of steps are that number: rounding."""
+
 
 @dataclass(frozen=True, slots=True)
 class Recording:
@@ -62,7 +65,7 @@ def record(
             f"frame_time {frame_time} and max_frames {max_frames}: a positive time and "
             "two frames or more are needed"
         )
-    every = max(1, math.ceil(frame_time / scene.config.time_step - 1e-9))
+    every = max(1, math.ceil(frame_time / scene.config.time_step - _WHOLE))
     qpos = scene.start_positions(start.as_array())
     data = data_at(scene, qpos[0])
     watch = Watch.over(scene, qpos)

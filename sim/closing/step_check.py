@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -20,9 +21,21 @@ from sim.world.scene import Scene
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-RUNNING, SETTLED, PINCHED, TIMED_OUT, DIVERGED = range(5)
-ENDINGS = ("running", "settled", "pinched", "timed_out", "diverged")
-"""How a closing ended, before anybody asks where. A pinched hand has shut on nothing."""
+
+class EndingCode(IntEnum):
+    """How a closing ended, before anybody asks where. A pinched hand has shut on nothing."""
+
+    RUNNING = 0
+    SETTLED = 1
+    PINCHED = 2
+    TIMED_OUT = 3
+    DIVERGED = 4
+
+
+RUNNING, SETTLED, PINCHED, TIMED_OUT, DIVERGED = EndingCode
+
+ENDINGS = tuple(code.name.lower() for code in EndingCode)
+"""The words for the codes, in their order: those of files and reports."""
 
 TOUCHING = 1e-6
 """[diameter] A finger this close to the outline touches it: ten times the resolution of the
@@ -32,38 +45,58 @@ engine's meshes, a thousandth of what a step moves."""
 _FIELDS = 6
 
 
+class _Shape(NamedTuple):
+    """The object's outline (n, 2) and the fingers of the hand, all in diameters."""
+
+    vertices: FloatArray
+    radius: float
+    directions: FloatArray
+    lengths: FloatArray
+    coefficients: FloatArray
+
+
+class _Bounds(NamedTuple):
+    """When a closing has ended; ``stride`` [step] is the time between two looks."""
+
+    pinched_sigma: float
+    still_speed: float
+    still_steps: int
+    stride: int
+
+
+class _Record(NamedTuple):
+    """What is updated, a row each for N closings; ``max_steps`` (N,) is read only."""
+
+    max_steps: IntArray
+    seen: FloatArray
+    still: IntArray
+    steps: IntArray
+    ending: IntArray
+
+
 @njit(cache=True)
 def _observe(
     ids: IntArray,
     qpos: FloatArray,
     qvel: FloatArray,
-    vertices: FloatArray,
-    radius: float,
-    directions: FloatArray,
-    lengths: FloatArray,
-    coefficients: FloatArray,
-    pinched_sigma: float,
-    still_speed: float,
-    still_steps: int,
-    max_steps: IntArray,
-    stride: int,
-    seen: FloatArray,
-    still: IntArray,
-    steps: IntArray,
-    ending: IntArray,
+    shape: _Shape,
+    bounds: _Bounds,
+    record: _Record,
 ) -> None:  # pragma: no cover - compiled
+    lengths, coefficients = shape.lengths, shape.coefficients
+    seen, still, steps, ending = record.seen, record.still, record.steps, record.ending
     fingers = np.empty((3, 2))
     depth = np.empty(3)
     for i in ids:
-        steps[i] += stride
-        fingers_seen(directions, qpos[i], fingers)
+        steps[i] += bounds.stride
+        fingers_seen(shape.directions, qpos[i], fingers)
         sigma = 0.0
         for k in range(3):
             sigma += coefficients[k] * qpos[i, k]
-        shape = 0.0
+        off = 0.0
         for k in range(3):
-            shape = max(shape, abs(qpos[i, k] - lengths[k] * sigma))
-        depths(vertices, fingers, radius, depth)
+            off = max(off, abs(qpos[i, k] - lengths[k] * sigma))
+        depths(shape.vertices, fingers, shape.radius, depth)
         deepest = max(depth[0], depth[1], depth[2])
         touches = 0
         for k in range(3):
@@ -74,17 +107,17 @@ def _observe(
             speed = max(speed, abs(qvel[i, k]))
         seen[i, _DEPTH] = max(deepest, 0.0)
         seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
-        seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], shape)
+        seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
         seen[i, _TOUCHES] = touches
-        still[i] = still[i] + stride if speed < still_speed and touches >= 2 else 0
+        still[i] = still[i] + bounds.stride if speed < bounds.still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
-        elif sigma < pinched_sigma:
+        elif sigma < bounds.pinched_sigma:
             ending[i] = PINCHED
-        elif still[i] >= still_steps:
+        elif still[i] >= bounds.still_steps:
             ending[i] = SETTLED
-        elif steps[i] >= max_steps[i]:
+        elif steps[i] >= record.max_steps[i]:
             ending[i] = TIMED_OUT
 
 
@@ -134,25 +167,21 @@ class Watch:
         """Look at the closings ``ids`` after ``stride`` more steps; qpos and qvel are (N, 6)."""
         scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
         observe: Callable[..., None] = _observe
-        observe(
-            ids,
-            qpos,
-            qvel,
+        shape = _Shape(
             scene.object.vertices,
             scene.finger_radius / scene.object.diameter,
             kinematics.directions,
             kinematics.lengths,
             kinematics.tendon_coefficients,
+        )
+        bounds = _Bounds(
             config.pinched_size / kinematics.longest_side,
             config.still_speed,
             config.still_steps,
-            self._max_steps,
             self.stride,
-            self._seen,
-            self._still,
-            self.steps,
-            self.ending,
         )
+        record = _Record(self._max_steps, self._seen, self._still, self.steps, self.ending)
+        observe(ids, qpos, qvel, shape, bounds, record)
 
     def diverged(self, ids: IntArray) -> None:
         """Note that the engine gave up on, or warned about, these closings."""

@@ -23,6 +23,9 @@ from sim.world.scene import Scene
 _OBJECT: Final = slice(3, 6)
 """Degrees of freedom of the object; the fingers' slides come first."""
 
+_NO_HEIGHT: Final = 1e-12
+"""[diameter] An edge whose line passes this close to the origin spans no area with it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Worlds:
@@ -167,7 +170,7 @@ def mean_distance(vertices: FloatArray) -> float:
         cross = ax * by - ay * bx
         area += 0.5 * cross
         height = cross / length  # signed; the triangle's orientation
-        if abs(height) < 1e-12:
+        if abs(height) < _NO_HEIGHT:
             continue
         ends = [
             (x * (bx - ax) + y * (by - ay)) / (length * abs(height))

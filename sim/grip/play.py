@@ -29,6 +29,9 @@ push, whose force hardly depends on the play."""
 _LONGEST: Final = 4.0
 """[s] Bound on a push; at rest it ends."""
 
+_LEAST_PLAY: Final = 1e-6
+"""[rad] An object that is expected to turn by less is turned as fast as if it were this much."""
+
 _STILL: Final = 1e-4
 """[1] Slower than this share of the free turning speed is still."""
 
@@ -121,7 +124,7 @@ def measure_play(scene: Scene, held: Supports, contacts: FloatArray, delta: floa
     ends: list[float] = []
     inside, deepest = True, 0.0
     for side, expected in zip((1.0, -1.0), predicted, strict=True):  # turning the object turns
-        speed = max(expected, 1e-6) / WAY  # the hand the other way round
+        speed = max(expected, _LEAST_PLAY) / WAY  # the hand the other way round
         data = rigid_data(model, start[3:])
         torque = scene.config.object_damping * scene.object.gyration_squared * speed
         data.qfrc_applied[2] = side * torque

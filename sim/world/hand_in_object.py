@@ -13,6 +13,9 @@ from numba import njit
 
 from icage.arrays import FloatArray
 
+_NO_SIDE = 1e-12
+"""[diameter] A side shorter than this (of a shut hand) has no direction."""
+
 
 @njit(cache=True)
 def turn_back(
@@ -98,7 +101,7 @@ def separated(
             a, b = fingers[j - count], fingers[(j - count + 1) % 3]
         nx, ny = b[1] - a[1], a[0] - b[0]
         length = math.hypot(nx, ny)
-        if length < 1e-12:
+        if length < _NO_SIDE:
             continue
         nx, ny = nx / length, ny / length
         low_h, high_h = math.inf, -math.inf

@@ -43,6 +43,10 @@ _REST_LENGTH = 1e-12
 """[diameter] Of the linkage's springs. Not 0: the engine takes a spring that has exactly its rest
 length for one without stiffness, and the first push would throw the fingers far off."""
 
+_COLLISION_TOLERANCE = 1e-10
+"""[diameter] To which the engine finds the nearest points of two convex pieces: a ten-thousandth of
+``TOUCHING`` in ``sim.closing.step_check``; its default of 1e-6 would be as coarse as that."""
+
 _CABLE_DEPTH, _PALM_DEPTH = -0.09, -0.13
 """[diameter] Where the drawn parts lie: below the object, which is seen from above."""
 
@@ -189,7 +193,7 @@ def _set_options(spec: MjSpec, config: SimConfig) -> None:
     option.cone = mj.mjtCone.mjCONE_ELLIPTIC
     option.iterations = config.solver_iterations
     option.tolerance = config.solver_tolerance
-    option.ccd_tolerance = 1e-10
+    option.ccd_tolerance = _COLLISION_TOLERANCE
     off = mj.mjtDisableBit
     option.disableflags = (
         int(off.mjDSBL_REFSAFE) | int(off.mjDSBL_AUTORESET) | int(off.mjDSBL_ISLAND)

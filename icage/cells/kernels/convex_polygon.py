@@ -3,19 +3,56 @@
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from icage.kernels.compiled import compiled
 
 
-@compiled
-def clip(px, py, done, n, e, gx, gy, cx, cy, spare, qx, qy, qdone):
-    """Keep the part of a convex polygon with e + g . (q - c) <= 0; returns its corner count.
+class Corners(NamedTuple):
+    """Room for a convex polygon; ``done`` marks corners that need no more work."""
 
-    ``done`` marks corners (new ones lack it); ``qx``, ``qy``, ``qdone`` are room to work in.
+    x: np.ndarray
+    y: np.ndarray
+    done: np.ndarray
+
+
+class Line(NamedTuple):
+    """The half plane e + g . (q - c) <= 0; ``weight`` sums the multipliers that prove it."""
+
+    e: float
+    g_x: float
+    g_y: float
+    c_x: float
+    c_y: float
+    weight: float
+
+
+class Point(NamedTuple):
+    """A point of the plane."""
+
+    x: float
+    y: float
+
+
+@compiled
+def new_corners(most):
+    """Room for ``most`` corners."""
+    return Corners(np.empty(most), np.empty(most), np.zeros(most, np.bool_))
+
+
+@compiled
+def clip(polygon, n, line, spare, room):
+    """Keep the part of a convex polygon on a line's side; returns its corner count.
+
+    New corners are not done; ``room`` is for as many corners as ``polygon`` has.
     """
+    px, py, done = polygon.x, polygon.y, polygon.done
+    qx, qy, qdone = room.x, room.y, room.done
+    gx, gy, cx, cy = line.g_x, line.g_y, line.c_x, line.c_y
     m = 0
-    e -= spare  # rounding of a line from multipliers that large
+    e = line.e - spare  # rounding of a line from multipliers that large
     for a in range(n):
         if m > len(px) - 3:
             break
@@ -88,8 +125,8 @@ def centroid(x, y, n):
         cx += part * (x[a] + x[a + 1] - 2.0 * x[0])
         cy += part * (y[a] + y[a + 1] - 2.0 * y[0])
     if total <= 0.0:
-        return x[:n].mean(), y[:n].mean()
-    return x[0] + cx / (3.0 * total), y[0] + cy / (3.0 * total)
+        return Point(x[:n].mean(), y[:n].mean())
+    return Point(x[0] + cx / (3.0 * total), y[0] + cy / (3.0 * total))
 
 
 @compiled

@@ -3,6 +3,8 @@
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from icage.cells.kernels.search import GAVE_UP, SIGHT, explore
@@ -11,12 +13,30 @@ from icage.kernels.compiled import compiled
 from icage.kernels.storage import hash_slot
 
 EMPTY = 1024
+"""Places in a new table."""
+
+EXACT, AT_MOST = 0, 1
+"""Columns of the known levels: the escape level (nan: unknown), and a bound from above."""
+
+
+class Memory(NamedTuple):
+    """The table of known cells: keys (n,), -1 where free, and levels (n, 2)."""
+
+    keys: np.ndarray
+    levels: np.ndarray
+
+
+class Escapes(NamedTuple):
+    """Escape levels (n,) of the cells asked about, nan where the search gave up; what is known."""
+
+    levels: np.ndarray
+    memory: Memory
 
 
 @compiled
 def new_memory():
-    """(keys, levels): the table of known cells; levels (n, 2) = exact (nan: unknown), at most."""
-    return np.full(EMPTY, -1, np.int64), np.full((EMPTY, 2), np.nan)
+    """An empty table."""
+    return Memory(np.full(EMPTY, -1, np.int64), np.full((EMPTY, 2), np.nan))
 
 
 @compiled
@@ -42,16 +62,15 @@ def shrinkable(pieces, z, placements):
 
 
 @compiled
-def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory_keys, memory_levels):
+def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory):
     """Escape level (n,) of each cell (n, 3), or any level at or below ``sigma`` if it escapes so.
 
     Cells that a search enters before its last new maximum escape exactly at the final level,
-    those after it no later. nan where the search gave up. Returns (levels, memory keys, memory
-    levels).
+    those after it no later.
     """
     m = len(pieces.ptr) - 1
-    keys = memory_keys
-    known = memory_levels
+    keys = memory.keys
+    known = memory.levels
     count = 0
     for at in range(len(keys)):
         count += keys[at] != -1
@@ -60,31 +79,30 @@ def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory_keys, memor
         key = (cells[k, 0] * m + cells[k, 1]) * m + cells[k, 2]
         at = hash_slot(keys, key)
         if keys[at] != -1:
-            if known[at, 1] <= sigma[k]:
-                levels[k] = known[at, 1]
+            if known[at, AT_MOST] <= sigma[k]:
+                levels[k] = known[at, AT_MOST]
                 continue
-            if not np.isnan(known[at, 0]):
-                levels[k] = known[at, 0]
+            if not np.isnan(known[at, EXACT]):
+                levels[k] = known[at, EXACT]
                 continue
         found = explore(pieces, z, cells[k], 0.0, cap, worst, np.inf, limit)
-        level = found[1]
-        if found[0] == GAVE_UP:
+        level = found.level
+        if found.outcome == GAVE_UP:
             levels[k] = np.nan
             continue
-        nodes = found[3]
-        node_level = found[4]
+        nodes = found.nodes
         levels[k] = level
         for n in range(len(nodes)):
             key = (nodes[n, 0] * m + nodes[n, 1]) * m + nodes[n, 2]
             at = hash_slot(keys, key)
             if keys[at] == -1:
                 keys[at] = key
-                known[at, 0] = np.nan
-                known[at, 1] = np.inf
+                known[at, EXACT] = np.nan
+                known[at, AT_MOST] = np.inf
                 count += 1
-            if n == 0 or node_level[n] < level:
-                known[at, 0] = level
-            known[at, 1] = min(known[at, 1], level)
+            if n == 0 or found.node_level[n] < level:
+                known[at, EXACT] = level
+            known[at, AT_MOST] = min(known[at, AT_MOST], level)
             if 2 * count > len(keys):
                 keys, known = _grown(keys, known)
-    return levels, keys, known
+    return Escapes(levels, Memory(keys, known))

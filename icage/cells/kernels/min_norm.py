@@ -10,25 +10,53 @@ in double-double arithmetic and always answers.
 from __future__ import annotations
 
 import math
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from icage.kernels import double_double as dd
 from icage.kernels.compiled import compiled
 
-INFEASIBLE = 0
-FOUND = 1
-UNSURE = -1
+
+class NormStatus(IntEnum):
+    """Whether there is a point; ``UNSURE``: doubles cannot tell, or not well enough where."""
+
+    UNSURE = -1
+    INFEASIBLE = 0
+    FOUND = 1
+
+
+UNSURE, INFEASIBLE, FOUND = NormStatus
 
 _PARALLEL = 1e-13
-_THIN = 1e-3  # [rad] a wedge of near-active rows thinner than this is left to the careful version
+"""[1] Sine of the angle between two rows below which they count as parallel: rows are unit vectors
+good to a few units in the last place, and no quotient is trusted below some hundred of these."""
+
+_THIN = 1e-3
+"""[rad] A wedge of near-active rows thinner than this is left to the careful version."""
+
+_CONFLICT = 1e-12
+"""[1] Parallel rows contradict each other if they do by this share of c beyond their errors:
+rounding of c itself, which its error bound does not hold."""
+
+_CAREFUL_PARALLEL = 1e-26
+"""[1] The same as ``_PARALLEL`` in double-double, whose last place is at 1e-32."""
+
+
+class LeastNorm(NamedTuple):
+    """The point of least norm; zero where there is none."""
+
+    status: NormStatus
+    w_x: float
+    w_y: float
 
 
 @compiled
 def min_norm(rows, n, worst):
     """Least norm over ``rows[:n]`` = (g_x, g_y, c, error), |g| = 1, in doubles.
 
-    Returns (status, w_x, w_y). ``UNSURE`` when the value may be off by more than ``worst``
+    ``UNSURE`` when the value may be off by more than ``worst``
     (same unit as c) or when feasibility hangs on rounding.
     """
     wx = 0.0
@@ -61,16 +89,16 @@ def min_norm(rows, n, worst):
                     hi = s
                     at_hi = q
             elif b > 0.0:
-                if b > 4.0 * (rows[q, 3] + rows[r, 3]) + 1e-12 * abs(c):
-                    return INFEASIBLE, 0.0, 0.0
-                return UNSURE, 0.0, 0.0
+                if b > 4.0 * (rows[q, 3] + rows[r, 3]) + _CONFLICT * abs(c):
+                    return LeastNorm(INFEASIBLE, 0.0, 0.0)
+                return LeastNorm(UNSURE, 0.0, 0.0)
         if lo > hi:
             a_lo = abs(rows[at_lo, 1] * gx - rows[at_lo, 0] * gy)
             a_hi = abs(rows[at_hi, 1] * gx - rows[at_hi, 0] * gy)
             doubt = (rows[at_lo, 3] + rows[r, 3]) / a_lo + (rows[at_hi, 3] + rows[r, 3]) / a_hi
             if lo - hi > 4.0 * doubt:
-                return INFEASIBLE, 0.0, 0.0
-            return UNSURE, 0.0, 0.0
+                return LeastNorm(INFEASIBLE, 0.0, 0.0)
+            return LeastNorm(UNSURE, 0.0, 0.0)
         s = 0.0
         first = r
         second = -1
@@ -83,8 +111,8 @@ def min_norm(rows, n, worst):
         wx = bx - s * gy
         wy = by + s * gx
     if first < 0:
-        return FOUND, 0.0, 0.0
-    return _certified(rows, n, worst, wx, wy, first, second), wx, wy
+        return LeastNorm(FOUND, 0.0, 0.0)
+    return LeastNorm(_certified(rows, n, worst, wx, wy, first, second), wx, wy)
 
 
 @compiled
@@ -130,7 +158,7 @@ def min_norm_careful(rows, n, slack):
     """The same in double-double: ``rows[:n]`` = (g_x, g_y, c), each hi, lo; |g| about 1.
 
     Touching counts as free: a row is satisfied when it is violated by no more than ``slack``.
-    Returns (status, w_x, w_y) with status ``FOUND`` or ``INFEASIBLE``.
+    The status is ``FOUND`` or ``INFEASIBLE``.
     """
     wxh = 0.0
     wxl = 0.0
@@ -155,9 +183,9 @@ def min_norm_careful(rows, n, slack):
             ah, al = dd.dot(qxh, qxl, qyh, qyl, -gyh, -gyl, gxh, gxl)
             th, tl = dd.dot(qxh, qxl, qyh, qyl, bxh, bxl, byh, byl)
             th, tl = dd.sub(rows[q, 4], rows[q, 5], th, tl)
-            if abs(ah) < 1e-26:
+            if abs(ah) < _CAREFUL_PARALLEL:
                 if th > slack:
-                    return INFEASIBLE, 0.0, 0.0
+                    return LeastNorm(INFEASIBLE, 0.0, 0.0)
                 continue
             sh, sl = dd.div(th, tl, ah, al)
             if ah > 0.0:
@@ -168,7 +196,7 @@ def min_norm_careful(rows, n, slack):
         if np.isfinite(loh) and np.isfinite(hih):
             vh, vl = dd.sub(loh, lol, hih, hil)
             if vh > slack:
-                return INFEASIBLE, 0.0, 0.0
+                return LeastNorm(INFEASIBLE, 0.0, 0.0)
         sh, sl = 0.0, 0.0
         if loh > 0.0:
             sh, sl = loh, lol
@@ -178,4 +206,4 @@ def min_norm_careful(rows, n, slack):
         wxh, wxl = dd.sub(bxh, bxl, th, tl)
         th, tl = dd.mul(sh, sl, gxh, gxl)
         wyh, wyl = dd.add(byh, byl, th, tl)
-    return FOUND, wxh + wxl, wyh + wyl
+    return LeastNorm(FOUND, wxh + wxl, wyh + wyl)

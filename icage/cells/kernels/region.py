@@ -7,12 +7,22 @@ Our own.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.facet import MAX_BASE, MAX_EDGES, finger_on_segment
+from icage.cells.kernels.facet import MAX_BASE, facet_of, finger_on_segment
 from icage.cells.kernels.sandwich import CORNERS, sandwich
 from icage.kernels.compiled import compiled
+
+
+class Sandwiches(NamedTuple):
+    """Inner and outer polygons: corners (k, 2) one after another, counts (n,), a cell each."""
+
+    inner: np.ndarray
+    inner_counts: np.ndarray
+    outer: np.ndarray
+    outer_counts: np.ndarray
 
 
 @compiled
@@ -54,19 +64,12 @@ def least_points(pieces, z, i, cells, wx, wy, standing, slots):
     base = np.empty((MAX_BASE, 5))
     for row in range(len(cells)):
         a = standing[row]
-        b = (a + 1) % 3
-        c = (a + 2) % 3
-        slot = slots[row]
-        piece = cells[row, a]
-        after = slot + 1 if slot + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
-        xa, ya, xb, yb = finger_on_segment(
-            pieces, z, a, pieces.slot_vertex[slot], pieces.slot_vertex[after],
-            b, cells[row, b], c, cells[row, c], wx[row], wy[row], base,
-        )  # fmt: skip
+        facet = facet_of(pieces, cells[row], a, slots[row])
+        ends = finger_on_segment(pieces, z, facet, wx[row], wy[row], base)
         ux = z[i, 0] - z[a, 0]
         uy = z[i, 1] - z[a, 1]
-        points[row, 0] = 0.5 * (xa + xb) + wx[row] * ux - wy[row] * uy
-        points[row, 1] = 0.5 * (ya + yb) + wx[row] * uy + wy[row] * ux
+        points[row, 0] = 0.5 * (ends.x_lo + ends.x_hi) + wx[row] * ux - wy[row] * uy
+        points[row, 1] = 0.5 * (ends.y_lo + ends.y_hi) + wx[row] * uy + wy[row] * ux
     return points
 
 
@@ -74,8 +77,7 @@ def least_points(pieces, z, i, cells, wx, wy, standing, slots):
 def all_sandwiches(pieces, z, i, nodes, points, level, enough, slack):
     """Sandwiches of finger i over all nodes (n, 3), with a starting position (n, 2) in each.
 
-    Sets that an earlier one of the same piece covers to within ``slack`` are left out. Returns
-    (inner corners, inner counts, outer corners, outer counts).
+    Sets that an earlier one of the same piece covers to within ``slack`` are left out.
     """
     inner_store = np.empty((1024, 2))
     outer_store = np.empty((1024, 2))
@@ -85,16 +87,13 @@ def all_sandwiches(pieces, z, i, nodes, points, level, enough, slack):
     last = np.full(len(pieces.ptr) - 1, -1, np.int64)  # chains of kept sets by piece
     chain = np.empty(len(nodes), np.int64)
     held = np.empty(len(nodes), np.int64)
-    scratch = np.empty((2 * MAX_EDGES + 2, 5))
     inner = np.empty((2, CORNERS))
     outer = np.empty((2, CORNERS))
     kept = 0
     n_in = 0
     n_out = 0
     for k in range(len(nodes)):
-        h, m = sandwich(
-            pieces, z, i, nodes[k], level, points[k, 0], points[k, 1], enough, scratch, inner, outer
-        )
+        h, m = sandwich(pieces, z, i, nodes[k], level, points[k], enough, inner, outer)
         if m < 3:
             continue
         piece = nodes[k, i]
@@ -124,4 +123,6 @@ def all_sandwiches(pieces, z, i, nodes, points, level, enough, slack):
         kept += 1
         n_in += h
         n_out += m
-    return inner_store[:n_in], inner_count[:kept], outer_store[:n_out], outer_count[:kept]
+    return Sandwiches(
+        inner_store[:n_in], inner_count[:kept], outer_store[:n_out], outer_count[:kept]
+    )

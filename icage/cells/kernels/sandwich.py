@@ -8,11 +8,21 @@ cuts (what is left is outside). Our own.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.convex_polygon import area, beyond, centroid, clip, hull
+from icage.cells.kernels.convex_polygon import (
+    Corners,
+    area,
+    beyond,
+    centroid,
+    clip,
+    hull,
+    new_corners,
+)
 from icage.cells.kernels.cut import boundary_point, cut, other_rows
+from icage.cells.kernels.facet import MAX_BASE
 from icage.kernels.compiled import compiled
 
 CORNERS = 320
@@ -21,27 +31,47 @@ CORNERS = 320
 _ROUNDS = 14
 _CENTRE_CUTS = 40
 
+_TINY = 1e-11
+"""[diameter] A step along a ray that is too short to count."""
+
+_SPARE = 1e-3
+"""[_TINY] An offset of a few rounding errors of the rows, per unit of their multipliers: a line is
+moved outward by this so that it cuts off nothing of the set."""
+
+_THIN = 0.01
+"""[1] Where less than this share of the outer polygon is known to be inside, the set is thin."""
+
+_NO_AREA = 1e-3
+"""[enough] An outer polygon smaller than this is not worth another cut."""
+
+
+class Counts(NamedTuple):
+    """How many corners the inner and the outer polygon have."""
+
+    inner: int
+    outer: int
+
 
 @compiled
-def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
+def sandwich(pieces, z, i, cell, level, start, enough, inner, outer):
     """Inner and outer polygon of finger i's positions in one cell below ``level``.
 
-    (x0, y0) is a position in the set; refined until the areas differ by less than ``enough``.
+    ``start`` (2,) is a position in the set; refined until the areas differ by less than ``enough``.
     Fills ``inner`` (2, CORNERS) and ``outer``; returns their corner counts.
     """
+    x0, y0 = start[0], start[1]
     j = (i + 1) % 3
     k = (i + 2) % 3
-    rows = scratch[:, :5]
+    rows = np.empty((MAX_BASE, 5))
     n = other_rows(pieces, z, i, j, cell[j], rows, 0)
     n = other_rows(pieces, z, i, k, cell[k], rows, n)
-    tiny = 1e-11 * pieces.scale
-    # an offset of a few rounding errors of the rows, per unit of their multipliers
+    tiny = _TINY * pieces.scale
     px = outer[0]
     py = outer[1]
     done = np.zeros(CORNERS, np.bool_)
-    qx = np.empty(CORNERS)
-    qy = np.empty(CORNERS)
-    qdone = np.zeros(CORNERS, np.bool_)
+    polygon = Corners(px, py, done)
+    room = new_corners(CORNERS)
+    qx, qy = room.x, room.y
     m = 0
     for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
         v = pieces.slot_vertex[s]
@@ -73,7 +103,7 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
             if nh > 2 and beyond(tx[a], ty[a], hx, hy, nh) <= share:
                 continue
             todo += 1
-            outside, e, gx, gy, weight = cut(rows, n, tx[a], ty[a], level)
+            outside, line = cut(rows, n, tx[a], ty[a], level)
             if not outside:
                 bx[nb], by[nb] = tx[a], ty[a]
                 nb += 1
@@ -81,27 +111,23 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
                     if px[b] == tx[a] and py[b] == ty[a]:
                         done[b] = True
                 continue
-            x, y, inside, ce, cgx, cgy, ex, ey, cw = boundary_point(
-                rows, n, cx, cy, tx[a], ty[a], level, tiny
-            )
-            bx[nb], by[nb] = x, y
+            end = boundary_point(rows, n, cx, cy, tx[a], ty[a], level, tiny)
+            bx[nb], by[nb] = end.x, end.y
             nb += 1
             # of the corner's own cut and the one nearest to the set the deeper; both while the set
             # looks like less than an area
-            if not inside:
-                depth = ce + cgx * (tx[a] - ex) + cgy * (ty[a] - ey)
-                deeper = depth * math.hypot(gx, gy) > e * math.hypot(cgx, cgy)
+            if not end.inside:
+                near = end.line
+                depth = near.e + near.g_x * (tx[a] - near.c_x) + near.g_y * (ty[a] - near.c_y)
+                deeper = depth * math.hypot(line.g_x, line.g_y) > line.e * math.hypot(
+                    near.g_x, near.g_y
+                )
                 if thin and m < CORNERS - 4:
-                    spare = 1e-3 * tiny * cw
-                    m = clip(px, py, done, m, ce, cgx, cgy, ex, ey, spare, qx, qy, qdone)
+                    m = clip(polygon, m, near, _SPARE * tiny * near.weight, room)
                     deeper = False
                 if deeper:
-                    e, gx, gy, weight = ce, cgx, cgy, cw
-                else:
-                    ex, ey = tx[a], ty[a]
-            else:
-                ex, ey = tx[a], ty[a]
-            m = clip(px, py, done, m, e, gx, gy, ex, ey, 1e-3 * tiny * weight, qx, qy, qdone)
+                    line = near
+            m = clip(polygon, m, line, _SPARE * tiny * line.weight, room)
         if m < 3:
             break
         # corners of a thin set add little to its hull one by one: where none seems worth it though
@@ -113,12 +139,12 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
         bx[:nh] = qx[:nh]
         by[:nh] = qy[:nh]
         nb = nh
-        thin = area(hx, hy, nh) < 0.01 * area(px, py, m)
+        thin = area(hx, hy, nh) < _THIN * area(px, py, m)
         # shoot from well inside: the middle of the outer polygon, cut down until it is in the set
         # (the position given may lie on the boundary, where rays along it see nothing)
         for _ in range(_CENTRE_CUTS):
             ox, oy = centroid(px, py, m)
-            outside, e, gx, gy, weight = cut(rows, n, ox, oy, level)
+            outside, line = cut(rows, n, ox, oy, level)
             if not outside:
                 cx = ox
                 cy = oy
@@ -129,9 +155,9 @@ def sandwich(pieces, z, i, cell, level, x0, y0, enough, scratch, inner, outer):
                 cx = hx[:nh].mean()
                 cy = hy[:nh].mean()
                 break
-            m = clip(px, py, done, m, e, gx, gy, ox, oy, 1e-3 * tiny * weight, qx, qy, qdone)
-            if m < 3 or area(px, py, m) < 1e-3 * enough:
+            m = clip(polygon, m, line, _SPARE * tiny * line.weight, room)
+            if m < 3 or area(px, py, m) < _NO_AREA * enough:
                 break
         if m < 3:
             break
-    return nh, m
+    return Counts(nh, m)

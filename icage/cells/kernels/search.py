@@ -10,9 +10,26 @@ it. Our own. [docs/theory.md, Sec. 3.2, Sec. 3.4]
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS, finger_on_segment, pass_value
+from icage.cells.kernels.columns import (
+    EDGE_FINGER,
+    EDGE_FROM,
+    EDGE_KEY,
+    EDGE_SLOT,
+    EDGE_TO,
+    NODE_EDGE,
+    PASS_SIGMA,
+    PASS_WX,
+    PASS_WY,
+    RECORD_BIRTH,
+    RECORD_LEVEL,
+    RECORD_NODE,
+    Ending,
+)
+from icage.cells.kernels.facet import facet_of, finger_on_segment, new_room, pass_value
 from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import (
@@ -24,9 +41,7 @@ from icage.kernels.storage import (
     rehashed,
 )
 
-ESCAPED = 1
-CLOSED_IN = 0
-GAVE_UP = -1
+GAVE_UP, CLOSED_IN, ESCAPED = Ending
 
 SIGHT = 1e-11
 """[diameter] What two fingers see of each other is decided with this much to spare."""
@@ -39,15 +54,61 @@ DEEP = 1e-5
 """[diameter] A basin known to be this deep is followed no further: above every depth cut in use."""
 
 
+class Birth(NamedTuple):
+    """Least sigma of a cell, w there, and a finger that is on an edge of its piece (-1: none)."""
+
+    sigma: float
+    w_x: float
+    w_y: float
+    finger: int
+    slot: int
+
+
+class Explored(NamedTuple):
+    """What a search has found; the columns are named in ``icage.cells.kernels.columns``.
+
+    Attributes
+    ----------
+    standing:
+        The finger that the others shrink to (-1: none needed).
+    nodes:
+        (k, 4) = pieces a, b, c and the edge that led here (-1 at the start).
+    node_level:
+        (k,) running maximum at entry.
+    edges:
+        (e, 5) = from node, to node (-1 never visited), finger, slot, key of the cell it leads to.
+    edge_value:
+        (e, 3) = sigma, w_x, w_y.
+    records:
+        (r, 3) = level at the running maximum, birth of the cell behind it, its node.
+    tally:
+        (2,) = passes computed, those in double-double.
+    keys, values:
+        The hash table from cell key to node.
+    """
+
+    outcome: Ending
+    level: float
+    standing: int
+    nodes: np.ndarray
+    node_level: np.ndarray
+    edges: np.ndarray
+    edge_value: np.ndarray
+    records: np.ndarray
+    tally: np.ndarray
+    keys: np.ndarray
+    values: np.ndarray
+
+
 @compiled
-def birth(pieces, z, a, b, c, cap, worst, base, rows, tally):
-    """Least sigma of a cell and where: (sigma, w_x, w_y, finger, slot).
+def birth(pieces, z, cell, cap, worst, room):
+    """Least sigma of a cell (3,) and where.
 
     At a positive minimum at least two fingers are held by an edge of their piece, so finger 1 or
     finger 2 is: the minimum over the cell is the least pass value over the edges of these two.
     """
-    if a == b and b == c:
-        return 0.0, 0.0, 0.0, -1, -1
+    if cell[0] == cell[1] and cell[1] == cell[2]:
+        return Birth(0.0, 0.0, 0.0, -1, -1)
     best = cap
     wx = 0.0
     wy = 0.0
@@ -55,36 +116,16 @@ def birth(pieces, z, a, b, c, cap, worst, base, rows, tally):
     at_finger = -1
     at_slot = -1
     for i in range(2):
-        piece = a if i == 0 else b
-        j = i + 1
-        piece_j = b if i == 0 else c
-        k = (i + 2) % 3
-        piece_k = c if i == 0 else a
+        piece = cell[i]
         for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
-            t = s + 1 if s + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
-            value, vx, vy = pass_value(
-                pieces,
-                z,
-                i,
-                pieces.slot_vertex[s],
-                pieces.slot_vertex[t],
-                j,
-                piece_j,
-                k,
-                piece_k,
-                best,
-                worst,
-                base,
-                rows,
-                tally,
-            )
+            value, vx, vy = pass_value(pieces, z, facet_of(pieces, cell, i, s), best, worst, room)
             if value < best or (not found and value <= best):
                 best, wx, wy = value, vx, vy
                 at_finger, at_slot = i, s
                 found = True
     if not found:
-        return np.inf, 0.0, 0.0, -1, -1
-    return best, wx, wy, at_finger, at_slot
+        return Birth(np.inf, 0.0, 0.0, -1, -1)
+    return Birth(best, wx, wy, at_finger, at_slot)
 
 
 @compiled
@@ -94,18 +135,9 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
     It has escaped when all fingers are in one piece, or when it can shrink to a point at once.
     ``stop_above`` ends the search when every open pass is above that level, ``node_limit`` when
     so many cells were entered.
-
-    Returns (outcome, level, standing, nodes, node_level, edges, edge_value, records, tally, keys,
-    values): standing the finger that the others shrink to (-1: none needed); nodes (k, 4) =
-    pieces a, b, c and the edge that led here (-1 at the start); node_level (k,) running maximum at
-    entry; edges (e, 5) = from node, to node (-1 never visited), finger, slot, key of the cell it
-    leads to; edge_value (e, 3) = sigma, w_x, w_y; records (r, 3) = level at the running maximum,
-    birth of the cell behind it, its node; keys, values: the hash table from cell key to node.
     """
     m = len(pieces.ptr) - 1
-    base = np.empty((MAX_BASE, 5))
-    rows = np.empty((MAX_ROWS, 4))
-    tally = np.zeros(2, np.int64)
+    room = new_room()
     nodes = np.empty((256, 4), np.int64)
     node_level = np.empty((256, 1))
     edges = np.empty((1024, 5), np.int64)
@@ -134,10 +166,10 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
         values[at] = n_nodes
         here = n_nodes
         nodes[here, 0], nodes[here, 1], nodes[here, 2] = cell[0], cell[1], cell[2]
-        nodes[here, 3] = via
+        nodes[here, NODE_EDGE] = via
         node_level[here, 0] = level
         if via >= 0:
-            edges[via, 1] = here
+            edges[via, EDGE_TO] = here
         n_nodes += 1
         if 2 * n_nodes > len(keys):
             keys, values = rehashed(keys, values)
@@ -148,18 +180,12 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             outcome = ESCAPED
             break
         if via >= 0:
-            finger, slot = edges[via, 2], edges[via, 3]
-            piece = nodes[edges[via, 0], finger]
-            t = slot + 1 if slot + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
-            j = (finger + 1) % 3
-            k = (finger + 2) % 3
-            wx, wy = edge_value[via, 1], edge_value[via, 2]
-            xa, ya, xb, yb = finger_on_segment(
-                pieces, z, finger, pieces.slot_vertex[slot], pieces.slot_vertex[t],
-                j, cell[j], k, cell[k], wx, wy, base,
-            )  # fmt: skip
-            dx = 0.5 * (xa + xb) - wx * z[finger, 0] + wy * z[finger, 1]
-            dy = 0.5 * (ya + yb) - wx * z[finger, 1] - wy * z[finger, 0]
+            finger, slot = edges[via, EDGE_FINGER], edges[via, EDGE_SLOT]
+            facet = facet_of(pieces, nodes[edges[via, EDGE_FROM]], finger, slot)
+            wx, wy = edge_value[via, PASS_WX], edge_value[via, PASS_WY]
+            ends = finger_on_segment(pieces, z, facet, wx, wy, room.base)
+            dx = 0.5 * (ends.x_lo + ends.x_hi) - wx * z[finger, 0] + wy * z[finger, 1]
+            dy = 0.5 * (ends.y_lo + ends.y_hi) - wx * z[finger, 1] - wy * z[finger, 0]
             standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale)
             if standing >= 0:
                 outcome = ESCAPED
@@ -170,8 +196,6 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
         # open its passes
         for i in range(3):
             piece = cell[i]
-            j = (i + 1) % 3
-            k = (i + 2) % 3
             for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
                 other = pieces.slot_neighbour[s]
                 if other < 0:
@@ -186,32 +210,19 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
                 at = hash_slot(keys, to_key)
                 if keys[at] != -1:
                     continue
-                t = s + 1 if s + 1 < pieces.ptr[piece + 1] else pieces.ptr[piece]
                 value, wx, wy = pass_value(
-                    pieces,
-                    z,
-                    i,
-                    pieces.slot_vertex[s],
-                    pieces.slot_vertex[t],
-                    j,
-                    cell[j],
-                    k,
-                    cell[k],
-                    cap,
-                    worst,
-                    base,
-                    rows,
-                    tally,
+                    pieces, z, facet_of(pieces, cell, i, s), cap, worst, room
                 )
                 if value == np.inf:
                     continue
                 if n_edges == edges.shape[0]:
                     edges = grown_ints(edges)
                     edge_value = grown_floats(edge_value)
-                edges[n_edges, 0], edges[n_edges, 1] = here, -1
-                edges[n_edges, 2], edges[n_edges, 3], edges[n_edges, 4] = i, s, to_key
-                edge_value[n_edges, 0] = value
-                edge_value[n_edges, 1], edge_value[n_edges, 2] = wx, wy
+                edges[n_edges, EDGE_FROM], edges[n_edges, EDGE_TO] = here, -1
+                edges[n_edges, EDGE_FINGER], edges[n_edges, EDGE_SLOT] = i, s
+                edges[n_edges, EDGE_KEY] = to_key
+                edge_value[n_edges, PASS_SIGMA] = value
+                edge_value[n_edges, PASS_WX], edge_value[n_edges, PASS_WY] = wx, wy
                 if n_heap == heap_value.shape[0]:
                     heap_value = grown_floats(heap_value)
                     heap_item = grown_ints(heap_item)
@@ -225,49 +236,45 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             via = heap_item[0, 0]
             heap_pop(heap_value[:, 0], heap_item[:, 0], n_heap)
             n_heap -= 1
-            at = hash_slot(keys, edges[via, 4])
+            at = hash_slot(keys, edges[via, EDGE_KEY])
             if keys[at] == -1:
                 found = True
             else:
-                edges[via, 1] = values[at]
+                edges[via, EDGE_TO] = values[at]
         if not found:
             level = np.inf
             break
         if value > stop_above:
             level = value
             break
-        source = edges[via, 0]
+        source = edges[via, EDGE_FROM]
         cell[0], cell[1], cell[2] = nodes[source, 0], nodes[source, 1], nodes[source, 2]
-        cell[edges[via, 2]] = pieces.slot_neighbour[edges[via, 3]]
+        cell[edges[via, EDGE_FINGER]] = pieces.slot_neighbour[edges[via, EDGE_SLOT]]
         if value >= level - tie:
             # entered for the first time at the running maximum, so what lies lower behind this
             # pass was not reachable below it; ties (several facets through one vertex) included
             level = max(level, value)
-            behind, _, _, _, _ = birth(
-                pieces, z, cell[0], cell[1], cell[2], level, worst, base, rows, tally
-            )
+            behind = birth(pieces, z, cell, level, worst, room).sigma
             if n_records == records.shape[0]:
                 records = grown_floats(records)
-            records[n_records, 0] = level
-            records[n_records, 1] = min(behind, level)
-            records[n_records, 2] = n_nodes
+            records[n_records, RECORD_LEVEL] = level
+            records[n_records, RECORD_BIRTH] = min(behind, level)
+            records[n_records, RECORD_NODE] = n_nodes
             n_records += 1
         elif n_records > 0:
             # further into the basin behind the last record: its depth is not that of the cell it
             # was entered by, which may be a sliver
             last = n_records - 1
-            if records[last, 0] - records[last, 1] < DEEP * pieces.scale:
-                behind, _, _, _, _ = birth(
-                    pieces, z, cell[0], cell[1], cell[2], level, worst, base, rows, tally
-                )
-                records[last, 1] = min(behind, records[last, 1])
+            if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] < DEEP * pieces.scale:
+                behind = birth(pieces, z, cell, level, worst, room).sigma
+                records[last, RECORD_BIRTH] = min(behind, records[last, RECORD_BIRTH])
     # passes left open may still lead between two visited cells
     for e in range(n_edges):
-        if edges[e, 1] == -1:
-            at = hash_slot(keys, edges[e, 4])
+        if edges[e, EDGE_TO] == -1:
+            at = hash_slot(keys, edges[e, EDGE_KEY])
             if keys[at] != -1:
-                edges[e, 1] = values[at]
-    return (
+                edges[e, EDGE_TO] = values[at]
+    return Explored(
         outcome,
         level,
         standing,
@@ -276,7 +283,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
         edges[:n_edges],
         edge_value[:n_edges],
         records[:n_records],
-        tally,
+        room.tally,
         keys,
         values,
     )

@@ -3,26 +3,87 @@
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS, pass_value
+from icage.cells.kernels.columns import (
+    BIRTH_SIGMA,
+    BIRTH_WX,
+    BIRTH_WY,
+    BORN_FINGER,
+    BORN_SLOT,
+    EDGE_FINGER,
+    EDGE_FROM,
+    EDGE_SLOT,
+    EDGE_TO,
+    LOW_DEPTH,
+    LOW_LEVEL,
+    MERGE_EDGE,
+    MERGE_KEEP,
+    MERGE_LOSE,
+    MERGE_SIDE,
+    StartSide,
+)
+from icage.cells.kernels.facet import facet_of, new_room, pass_value
 from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
+
+NEITHER, SWALLOWED, SURVIVING = StartSide
+
+
+class Births(NamedTuple):
+    """Least sigma of cells: value (n, 3) = sigma, w_x, w_y and where (n, 2) = finger, slot."""
+
+    value: np.ndarray
+    where: np.ndarray
+
+
+class Merges(NamedTuple):
+    """The merge tree of a graph.
+
+    ``stamp`` (n,) is the level at which a node was hung below its ``parent`` (n,). merges (m, 4) =
+    surviving minimum, swallowed minimum (nodes), edge, ``StartSide``; lows (m, 2) = level, level -
+    birth of the swallowed minimum.
+    """
+
+    parent: np.ndarray
+    stamp: np.ndarray
+    merges: np.ndarray
+    lows: np.ndarray
+
+
+class LowestCells(NamedTuple):
+    """Cells (n, 3), and ``birth`` (n, 3) and ``birth_at`` (n, 2) of each as of ``Births``."""
+
+    cells: np.ndarray
+    birth: np.ndarray
+    birth_at: np.ndarray
+
+
+class Passes(NamedTuple):
+    """Births (m^3,) of all cells; edges (e, 4) and the levels (e,) of the passes."""
+
+    births: np.ndarray
+    edges: np.ndarray
+    values: np.ndarray
 
 
 @compiled
 def births(pieces, z, nodes, cap, worst):
-    """Least sigma of every node: (n, 3) = sigma, w_x, w_y and (n, 2) = finger, slot."""
-    base = np.empty((MAX_BASE, 5))
-    rows = np.empty((MAX_ROWS, 4))
-    tally = np.zeros(2, np.int64)
+    """Least sigma of every node, whose pieces are the first columns of ``nodes`` (n, 3 or more)."""
+    room = new_room()
     value = np.empty((len(nodes), 3))
     where = np.empty((len(nodes), 2), np.int64)
     for k in range(len(nodes)):
-        value[k, 0], value[k, 1], value[k, 2], where[k, 0], where[k, 1] = birth(
-            pieces, z, nodes[k, 0], nodes[k, 1], nodes[k, 2], cap, worst, base, rows, tally
+        born = birth(pieces, z, nodes[k], cap, worst, room)
+        value[k, BIRTH_SIGMA], value[k, BIRTH_WX], value[k, BIRTH_WY] = (
+            born.sigma,
+            born.w_x,
+            born.w_y,
         )
-    return value, where
+        where[k, BORN_FINGER], where[k, BORN_SLOT] = born.finger, born.slot
+    return Births(value, where)
 
 
 @compiled
@@ -37,11 +98,7 @@ def find_at(parent, stamp, node, level):
 def merge(node_birth, edges, edge_value, below):
     """Kruskal's union over the passes below a level. [Kruskal1956]
 
-    Union by size, no path compression: ``stamp`` is the level at which a node was hung below its
-    parent, so that the tree answers for every level. Returns (parent, stamp, merges, lows):
-    merges (m, 4) ints = surviving minimum, swallowed minimum (nodes), edge, 1 if the start (node
-    0) was on the swallowed side or 2 if on the surviving one, 0 if on neither; lows (m, 2) =
-    level, level - birth of the swallowed minimum.
+    Union by size, no path compression, so that the tree answers for every level.
     """
     n = len(node_birth)
     parent = np.arange(n)
@@ -55,10 +112,10 @@ def merge(node_birth, edges, edge_value, below):
     for e in order:
         if edge_value[e] >= below:
             break
-        if edges[e, 1] < 0:
+        if edges[e, EDGE_TO] < 0:
             continue
-        a = find_at(parent, stamp, edges[e, 0], np.inf)
-        b = find_at(parent, stamp, edges[e, 1], np.inf)
+        a = find_at(parent, stamp, edges[e, EDGE_FROM], np.inf)
+        b = find_at(parent, stamp, edges[e, EDGE_TO], np.inf)
         if a == b:
             continue
         start = find_at(parent, stamp, 0, np.inf)
@@ -68,12 +125,13 @@ def merge(node_birth, edges, edge_value, below):
             node_birth[low_a] == node_birth[low_b] and low_a > low_b
         )
         keep, lose = (low_b, low_a) if swap else (low_a, low_b)
-        merges[count, 0], merges[count, 1], merges[count, 2] = keep, lose, e
-        merges[count, 3] = 0
+        merges[count, MERGE_KEEP], merges[count, MERGE_LOSE] = keep, lose
+        merges[count, MERGE_EDGE] = e
+        merges[count, MERGE_SIDE] = NEITHER
         if start == a or start == b:
-            merges[count, 3] = 1 if (start == a) == swap else 2
-        lows[count, 0] = edge_value[e]
-        lows[count, 1] = edge_value[e] - node_birth[lose]
+            merges[count, MERGE_SIDE] = SWALLOWED if (start == a) == swap else SURVIVING
+        lows[count, LOW_LEVEL] = edge_value[e]
+        lows[count, LOW_DEPTH] = edge_value[e] - node_birth[lose]
         count += 1
         if size[a] < size[b]:
             a, b = b, a
@@ -81,35 +139,33 @@ def merge(node_birth, edges, edge_value, below):
         stamp[b] = edge_value[e]
         size[a] += size[b]
         lowest[a] = keep
-    return parent, stamp, merges[:count], lows[:count]
+    return Merges(parent, stamp, merges[:count], lows[:count])
 
 
 @compiled
 def lowest_cells(pieces, z, cap, worst, tie, cut):
     """Cells of the whole free space whose least point no neighbour across a facet goes below.
 
-    Returns (cells (n, 3), birth (n, 3), birth_at (n, 2)). A necessary condition for a local
-    minimum, tested facet by facet; cells that meet only at a vertex are left to the caller.
+    A necessary condition for a local minimum, tested facet by facet; cells that meet
+    only at a vertex are left to the caller.
     Complexity: all m^3 cells, about 4 us each.
     """
     m = len(pieces.ptr) - 1
-    base = np.empty((MAX_BASE, 5))
-    rows = np.empty((MAX_ROWS, 4))
-    tally = np.zeros(2, np.int64)
+    room = new_room()
     low = np.empty((m, m, m))
     where = np.empty((m, m, m, 2), np.int64)
     at = np.empty((m, m, m, 2))
+    cell = np.empty(3, np.int64)
     for a in range(m):
         for b in range(m):
             for c in range(m):
-                low[a, b, c], at[a, b, c, 0], at[a, b, c, 1], f, s = birth(
-                    pieces, z, a, b, c, cap, worst, base, rows, tally
-                )
-                where[a, b, c, 0] = f
-                where[a, b, c, 1] = s
+                cell[0], cell[1], cell[2] = a, b, c
+                born = birth(pieces, z, cell, cap, worst, room)
+                low[a, b, c] = born.sigma
+                at[a, b, c, 0], at[a, b, c, 1] = born.w_x, born.w_y
+                where[a, b, c, BORN_FINGER], where[a, b, c, BORN_SLOT] = born.finger, born.slot
     cells = np.empty((256, 3), np.int64)
     count = 0
-    cell = np.empty(3, np.int64)
     other = np.empty(3, np.int64)
     for a in range(m):
         for b in range(m):
@@ -127,14 +183,9 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
                         other[i] = pieces.slot_neighbour[s]
                         if low[other[0], other[1], other[2]] >= here - cut:
                             continue
-                        t = s + 1 if s + 1 < pieces.ptr[cell[i] + 1] else pieces.ptr[cell[i]]
-                        j = (i + 1) % 3
-                        k = (i + 2) % 3
-                        value, _, _ = pass_value(
-                            pieces, z, i, pieces.slot_vertex[s], pieces.slot_vertex[t],
-                            j, cell[j], k, cell[k], here + 2.0 * tie, worst, base, rows, tally,
-                        )  # fmt: skip
-                        if value <= here + tie:
+                        facet = facet_of(pieces, cell, i, s)
+                        found = pass_value(pieces, z, facet, here + 2.0 * tie, worst, room)
+                        if found.sigma <= here + tie:
                             lowest = False
                             break
                     if not lowest:
@@ -148,23 +199,21 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
     where_out = np.empty((count, 2), np.int64)
     for n in range(count):
         a, b, c = cells[n, 0], cells[n, 1], cells[n, 2]
-        births_out[n, 0] = low[a, b, c]
-        births_out[n, 1] = at[a, b, c, 0]
-        births_out[n, 2] = at[a, b, c, 1]
+        births_out[n, BIRTH_SIGMA] = low[a, b, c]
+        births_out[n, BIRTH_WX] = at[a, b, c, 0]
+        births_out[n, BIRTH_WY] = at[a, b, c, 1]
         where_out[n] = where[a, b, c]
-    return cells[:count], births_out, where_out
+    return LowestCells(cells[:count], births_out, where_out)
 
 
 @compiled
 def all_passes(pieces, z, cap, worst):
-    """Births (m^3,) of all cells and all passes: edges (e, 4), as ``merge`` wants them, and values.
+    """Births of all cells, and all passes as ``merge`` wants them.
 
     Cell (a, b, c) has the number (a m + b) m + c. Complexity: m^3 cells, some 10 passes each.
     """
     m = len(pieces.ptr) - 1
-    base = np.empty((MAX_BASE, 5))
-    rows = np.empty((MAX_ROWS, 4))
-    tally = np.zeros(2, np.int64)
+    room = new_room()
     low = np.empty(m * m * m)
     edges = np.empty((3 * m * m * len(pieces.slot_vertex) // 2 + 1, 4), np.int64)
     values = np.empty(len(edges))
@@ -173,26 +222,19 @@ def all_passes(pieces, z, cap, worst):
     e = 0
     for number in range(m * m * m):
         cell[0], cell[1], cell[2] = number // (m * m), number // m % m, number % m
-        low[number], _, _, _, _ = birth(
-            pieces, z, cell[0], cell[1], cell[2], cap, worst, base, rows, tally
-        )
+        low[number] = birth(pieces, z, cell, cap, worst, room).sigma
         if low[number] == np.inf:
             continue
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
             for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
                 if pieces.slot_neighbour[s] <= cell[i]:
                     continue
-                t = s + 1 if s + 1 < pieces.ptr[cell[i] + 1] else pieces.ptr[cell[i]]
-                value, _, _ = pass_value(
-                    pieces, z, i, pieces.slot_vertex[s], pieces.slot_vertex[t],
-                    j, cell[j], k, cell[k], cap, worst, base, rows, tally,
-                )  # fmt: skip
+                value = pass_value(pieces, z, facet_of(pieces, cell, i, s), cap, worst, room).sigma
                 if value == np.inf:
                     continue
-                edges[e, 0] = number
-                edges[e, 1] = number + (pieces.slot_neighbour[s] - cell[i]) * step[i]
-                edges[e, 2], edges[e, 3] = i, s
+                edges[e, EDGE_FROM] = number
+                edges[e, EDGE_TO] = number + (pieces.slot_neighbour[s] - cell[i]) * step[i]
+                edges[e, EDGE_FINGER], edges[e, EDGE_SLOT] = i, s
                 values[e] = value
                 e += 1
-    return low, edges[:e], values[:e]
+    return Passes(low, edges[:e], values[:e])

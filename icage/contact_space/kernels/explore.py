@@ -10,11 +10,35 @@ one, not whole rectangles.
 from __future__ import annotations
 
 import heapq
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
 from numba.typed import Dict
 
+from icage.contact_space.kernels.columns import (
+    EDGE_FROM,
+    EDGE_KIND,
+    EDGE_LABEL,
+    EDGE_TO,
+    END_LOWER,
+    END_ROW,
+    ENTRY_LABEL,
+    ENTRY_REGION,
+    HAND_LEVEL,
+    NODE_LEVEL,
+    NODE_S,
+    NODE_SIGMA,
+    NODE_U,
+    REGION_EDGE,
+    REGION_J,
+    REGION_K,
+    REGION_PAIR,
+    REGION_PIECE,
+    TUNNEL_BELOW,
+    EdgeKind,
+    Ending,
+)
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -26,13 +50,40 @@ from icage.contact_space.kernels.rectangle import (
 )  # fmt: skip
 from icage.kernels.compiled import compiled
 
-ESCAPED, CLOSED_IN, GAVE_UP = 0, 1, 2
+ESCAPED, CLOSED_IN, GAVE_UP = Ending
 
-SEAM, TUNNEL, PINCH = 0, 1, 2
-"""Kinds of graph edges; a pinch is a tunnel edge that ends with all fingers in one point."""
+SEAM, TUNNEL, PINCH = EdgeKind
 
 FIRST_END = -1
 """Labels from here downwards are ends of tunnel edges: end number FIRST_END - label."""
+
+
+class Explored(NamedTuple):
+    """What a search has found; the columns are named in ``icage.contact_space.kernels.columns``.
+
+    Attributes
+    ----------
+    regions, nodes:
+        (r, 5) = i, j, k, c, edge first reached by; (r, 4) = least sigma, s, u, level reached at.
+    edges, hands:
+        (e, 4) = from, to, label or row of the tunnel edge, kind (in a pinch, ``to`` is -1);
+        (e, 9) = level, a hand (d, w) of least sigma, the hand at a tunnel's other end.
+    entries, places, left:
+        Open list: (p, 2) = region, label; (p, 2) = s, u; rows that were never closed.
+    tunnels_used:
+        Tunnel edges that first reached a region.
+    """
+
+    outcome: Ending
+    level: float
+    regions: np.ndarray
+    nodes: np.ndarray
+    edges: np.ndarray
+    hands: np.ndarray
+    entries: np.ndarray
+    places: np.ndarray
+    left: np.ndarray
+    tunnels_used: int
 
 
 @compiled
@@ -74,32 +125,33 @@ def copy(values, out, first):
 
 @compiled
 def add_region(space, region, parent, level, corners, count, ints, floats, r):
-    """Write row r: ints = i, j, k, c, parent edge; floats = birth, s, u, level."""
+    """Write row r of the regions (``ints``) and of the nodes (``floats``)."""
     if r == len(ints):
         ints, floats = longer(ints), longer(floats)
     for a in range(4):
         ints[r, a] = region[a]
-    ints[r, 4] = parent
-    low, s, u, s_too, u_too = least_of_region(
-        space, region[0], region[1], region[2], corners, count
-    )
+    ints[r, REGION_EDGE] = parent
+    least = least_of_region(space, region[0], region[1], region[2], corners, count)
     # the middle of a valley, where the third finger is least likely to touch
-    floats[r, 0], floats[r, 1], floats[r, 2] = low, 0.5 * (s + s_too), 0.5 * (u + u_too)
-    floats[r, 3] = max(level, low) if r == 0 else level
+    floats[r, NODE_SIGMA] = least.sigma
+    floats[r, NODE_S] = 0.5 * (least.s + least.s_too)
+    floats[r, NODE_U] = 0.5 * (least.u + least.u_too)
+    floats[r, NODE_LEVEL] = max(level, least.sigma) if r == 0 else level
     return ints, floats
 
 
 @compiled
 def open_seams(space, region, r, corners, count, ints, floats, p, heap):
     """Put the seams of region r on the open list."""
-    i, j, k, c = region[0], region[1], region[2], region[3]
+    i, j = region[REGION_PAIR], region[REGION_J]
+    k, c = region[REGION_K], region[REGION_PIECE]
     for label in range(FIRST_SLOT + space.ptr[c + 1] - space.ptr[c]):
         value, s, u = seam_value(space, i, j, k, c, label, corners, count)
         if value == np.inf:
             continue
         if p == len(ints):
             ints, floats = longer(ints), longer(floats)
-        ints[p, 0], ints[p, 1] = r, label
+        ints[p, ENTRY_REGION], ints[p, ENTRY_LABEL] = r, label
         floats[p, 0], floats[p, 1] = s, u
         heapq.heappush(heap, (value, p))
         p += 1
@@ -113,9 +165,9 @@ def open_tunnels(key, r, end_keys, ends, hands, ints, floats, p, heap):
     while e < len(end_keys) and end_keys[e] == key:
         if p == len(ints):
             ints, floats = longer(ints), longer(floats)
-        ints[p, 0], ints[p, 1] = r, FIRST_END - e
+        ints[p, ENTRY_REGION], ints[p, ENTRY_LABEL] = r, FIRST_END - e
         floats[p, 0], floats[p, 1] = 0.0, 0.0
-        heapq.heappush(heap, (hands[ends[e, 0], 0], p))
+        heapq.heappush(heap, (hands[ends[e, END_ROW], HAND_LEVEL], p))
         p += 1
         e += 1
     return ints, floats, p
@@ -128,12 +180,6 @@ def explore(space, start, end_keys, ends, tunnels, tunnel_hands, stop_above, lim
     ``tunnels`` (t, 9) and ``tunnel_hands`` (t, 9) are as of ``all_tunnels``; ``ends`` (e, 2) = row
     of a tunnel edge, 1 if it is taken from below, by ``end_keys`` (e,), ascending, the keys of the
     regions where the search may enter it.
-
-    Returns (outcome, level, regions (r, 5) = i, j, k, c, parent edge, nodes (r, 4) = birth, s, u,
-    level reached at; edges (e, 4) = from, to, label or row of the tunnel edge, kind; hands (e, 9) =
-    level, a hand (d, w) of least sigma on the edge, the hand at a tunnel's other end; entries (p,
-    2) = region, label, places (p, 2), open entries, number of tunnel edges that first reached a
-    region). In an edge that pinches, ``to`` is -1.
     """
     known = Dict.empty(types.int64, types.int64)
     regions, nodes = np.empty((256, 5), np.int64), np.empty((256, 4))
@@ -168,8 +214,8 @@ def explore(space, start, end_keys, ends, tunnels, tunnel_hands, stop_above, lim
             if origin >= 0:
                 if e == len(edges):
                     edges, hands = longer(edges), longer(hands)
-                edges[e, 0], edges[e, 2], edges[e, 3] = origin, via, kind
-                edges[e, 1] = -1 if pinched else (r if new else known[key])
+                edges[e, EDGE_FROM], edges[e, EDGE_LABEL], edges[e, EDGE_KIND] = origin, via, kind
+                edges[e, EDGE_TO] = -1 if pinched else (r if new else known[key])
                 copy(hand, hands[e], 0)
                 e += 1
             if pinched or (new and kind == TUNNEL):
@@ -182,8 +228,8 @@ def explore(space, start, end_keys, ends, tunnels, tunnel_hands, stop_above, lim
             regions, nodes = add_region(
                 space, targets[a], e - 1, level, corners, count, regions, nodes, r
             )
-            level = nodes[r, 3]
-            if nodes[r, 0] <= space.pinch:
+            level = nodes[r, NODE_LEVEL]
+            if nodes[r, NODE_SIGMA] <= space.pinch:
                 outcome = ESCAPED
             else:
                 entries, places, p = open_seams(
@@ -204,26 +250,28 @@ def explore(space, start, end_keys, ends, tunnels, tunnel_hands, stop_above, lim
             level = np.inf
             break
         value, entry = heapq.heappop(heap)
-        origin, via = entries[entry, 0], entries[entry, 1]
-        i, j, k = regions[origin, 0], regions[origin, 1], regions[origin, 2]
+        origin, via = entries[entry, ENTRY_REGION], entries[entry, ENTRY_LABEL]
+        i, j = regions[origin, REGION_PAIR], regions[origin, REGION_J]
+        k = regions[origin, REGION_K]
         level = max(level, value)
-        hand[0] = value
+        hand[HAND_LEVEL] = value
         if via >= 0:
             kind = SEAM
-            queue = across(space, i, j, k, regions[origin, 3], via, targets)
+            queue = across(space, i, j, k, regions[origin, REGION_PIECE], via, targets)
             configuration(space, i, j, k, places[entry, 0], places[entry, 1], hand, 1)
             copy(hand[1:5], hand, 5)
             continue
-        via, upwards = ends[FIRST_END - via, 0], ends[FIRST_END - via, 1]
+        end = FIRST_END - via
+        via, upwards = ends[end, END_ROW], ends[end, END_LOWER]
         kind, queue = TUNNEL, 1
-        if tunnels[via, 4] < 0:
+        if tunnels[via, TUNNEL_BELOW] < 0:
             kind = PINCH
         for b in range(4):
             targets[0, b] = tunnels[via, b if upwards else 4 + b]
             hand[1 + b] = tunnel_hands[via, 5 + b if upwards else 1 + b]
             hand[5 + b] = tunnel_hands[via, 1 + b if upwards else 5 + b]
     left = np.array([entry for _, entry in heap], np.int64)
-    return (
+    return Explored(
         outcome, level, regions[:r], nodes[:r], edges[:e], hands[:e], entries[:p], places[:p],
         left, used,
     )  # fmt: skip

@@ -3,9 +3,29 @@
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from icage.contact_space.kernels.columns import (
+    EDGE_FROM,
+    EDGE_TO,
+    MERGE_EDGE,
+    MERGE_ELDER,
+    MERGE_YOUNGER,
+)
 from icage.kernels.compiled import compiled
+
+
+class Persistence(NamedTuple):
+    """Merges (m, 3) = node of the elder minimum, node of the younger one, edge; their levels (m,).
+
+    ``minimum`` (r,) is the node of the least minimum of each node's final component.
+    """
+
+    merges: np.ndarray
+    levels: np.ndarray
+    minimum: np.ndarray
 
 
 @compiled
@@ -21,9 +41,7 @@ def root_of(parent, node):
 def persistence(births, edges, values, below):
     """Merges of components, by the elder rule, over all edges under a level.
 
-    Returns (merges (m, 3) = node of the elder minimum, node of the younger one, edge; levels (m,);
-    minimum (r,) = node of the least minimum of each node's final component). The younger minimum
-    ends at the merge: its depth is the level less its birth.
+    The younger minimum ends at the merge: its depth is the level less its birth.
     """
     n = len(births)
     parent = np.arange(n)
@@ -34,15 +52,16 @@ def persistence(births, edges, values, below):
     for e in np.argsort(values, kind="mergesort"):
         if values[e] >= below:
             break
-        if edges[e, 1] < 0:
+        if edges[e, EDGE_TO] < 0:
             continue
-        a, b = root_of(parent, edges[e, 0]), root_of(parent, edges[e, 1])
+        a, b = root_of(parent, edges[e, EDGE_FROM]), root_of(parent, edges[e, EDGE_TO])
         if a == b:
             continue
         old, young = oldest[a], oldest[b]
         if births[young] < births[old]:
             old, young = young, old
-        merges[count, 0], merges[count, 1], merges[count, 2] = old, young, e
+        merges[count, MERGE_ELDER], merges[count, MERGE_YOUNGER] = old, young
+        merges[count, MERGE_EDGE] = e
         levels[count] = values[e]
         count += 1
         parent[b] = a
@@ -50,4 +69,4 @@ def persistence(births, edges, values, below):
     minimum = np.empty(n, np.int64)
     for node in range(n):
         minimum[node] = oldest[root_of(parent, node)]
-    return merges[:count], levels[:count], minimum
+    return Persistence(merges[:count], levels[:count], minimum)

@@ -10,6 +10,7 @@ no inverse of T is taken, so a singular T needs no care.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,24 @@ MOST_CORNERS = 48
 
 S_LOW, U_LOW, S_HIGH, U_HIGH, FIRST_SLOT = 0, 1, 2, 3, 4
 """Labels of a region's boundary: a finger at the start or end of its edge, then the slots."""
+
+
+class Least(NamedTuple):
+    """Least sigma and both ends (s, u) of where it is attained."""
+
+    sigma: float
+    s: float
+    u: float
+    s_too: float
+    u_too: float
+
+
+class LeastAt(NamedTuple):
+    """Least sigma on a segment, and where."""
+
+    sigma: float
+    s: float
+    u: float
 
 
 @compiled
@@ -122,7 +141,7 @@ def least_on_edge(space, i, j, k, s1, u1, s2, u2):
     if square > 0.0:
         t = min(1.0, max(0.0, -(gx * ex + gy * ey) / square))
     s, u = s1 + t * ds, u1 + t * du
-    return scale_at(space, i, j, k, s, u), s, u
+    return LeastAt(scale_at(space, i, j, k, s, u), s, u)
 
 
 @compiled
@@ -150,7 +169,7 @@ def least_of_region(space, i, j, k, corners, count):
                 far, fs, fu = math.hypot(s - ls, u - lu), s, u
             # the other end of a level edge
             value, s, u = scale_at(space, i, j, k, s2, u2), s2, u2
-    return low, ls, lu, fs, fu
+    return Least(low, ls, lu, fs, fu)
 
 
 @compiled
@@ -220,7 +239,7 @@ def seam_value(space, i, j, k, c, label, corners, count):
                     low, ls, lu = value, vs, vu
         on_before = on_here
         b = a
-    return low, ls, lu
+    return LeastAt(low, ls, lu)
 
 
 @compiled

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from icage.contact_space.kernels.columns import Shot
 from icage.contact_space.kernels.rectangle import (
     MOST_CORNERS,
     finger_at,
@@ -19,7 +20,11 @@ from icage.contact_space.kernels.rectangle import (
 )  # fmt: skip
 from icage.kernels.compiled import compiled
 
-NO_TUNNEL, LANDED, PINCHED = 0, 1, 2
+NO_TUNNEL, LANDED, PINCHED = Shot
+
+_ON_THE_WAY = 1e-9
+"""[1] A wall this far (share of the way) before the start or behind the end is still met: rounding
+of a finger that stands on a wall."""
 
 
 @compiled
@@ -77,7 +82,7 @@ def first_hit(space, x, y, tx, ty, skip, skip_too):
             continue
         off_x, off_y = space.edge_x[q] - x, space.edge_y[q] - y
         t = (off_x * ey - off_y * ex) / speed
-        if t >= best or t < -1e-9 or t > 1.0 + 1e-9:
+        if t >= best or t < -_ON_THE_WAY or t > 1.0 + _ON_THE_WAY:
             continue
         s = (t * dx - off_x) * ex + (t * dy - off_y) * ey
         if -space.hair <= s <= space.edge_length[q] + space.hair:

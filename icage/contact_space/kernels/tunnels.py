@@ -12,8 +12,11 @@ sublevels. [Bunis2018, Def. 9, Lemma 4.3]
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from icage.contact_space.kernels.columns import HAND_LEVEL, TUNNEL_KEPT
 from icage.contact_space.kernels.explore import configuration, longer
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
@@ -35,6 +38,21 @@ from icage.contact_space.kernels.shooting import (
     touches,
 )
 from icage.kernels.compiled import compiled
+
+_LOWER = 1e-3
+"""[tie] A distance falls on across a side if it is lower by this: above the rounding of the same
+corner seen from two rectangles."""
+
+
+class Tunnels(NamedTuple):
+    """All tunnel edges of a hand.
+
+    rows (t, 9) = region above, region below (-1: a pinch), finger kept; hands (t, 9) = level, hand
+    above, hand below.
+    """
+
+    rows: np.ndarray
+    hands: np.ndarray
 
 
 @compiled
@@ -60,7 +78,7 @@ def lower_beside(space, low, at, j, k):
     """Whether the distance falls on across a side of rectangle (j, k) that holds its minimum."""
     n = len(low)
     s, u = at[j, k, 0], at[j, k, 1]
-    bound = low[j, k] - 1e-3 * space.tie
+    bound = low[j, k] - _LOWER * space.tie
     if s <= space.clip and low[(j - 1) % n, k] < bound:
         return True
     if u <= space.clip and low[j, (k - 1) % n] < bound:
@@ -83,8 +101,8 @@ def is_lowest(space, i, j, k, c, low, corners, count):
             many = region_corners(space, out[a, 0], out[a, 1], out[a, 2], out[a, 3], other, spare)
             if many == 0:
                 continue
-            least, _, _, _, _ = least_of_region(space, out[a, 0], out[a, 1], out[a, 2], other, many)
-            if least < low - space.tie:
+            least = least_of_region(space, out[a, 0], out[a, 1], out[a, 2], other, many)
+            if least.sigma < low - space.tie:
                 return False
     return True
 
@@ -132,10 +150,7 @@ def _one_may_leave(space, j, k, s, u):
 
 @compiled
 def all_tunnels(space):
-    """All tunnel edges: ints (t, 9) = region above, region below (-1: a pinch), finger kept; floats
-    (t, 9) = level, hand above, hand below. O(n^2) distances, then O(n) for each of the few
-    candidates.
-    """
+    """All tunnel edges. O(n^2) distances, then O(n) for each of the few candidates."""
     ints, floats = np.empty((64, 9), np.int64), np.empty((64, 9))
     corners, spare = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
     target, where = np.empty(4, np.int64), np.empty(4)
@@ -183,8 +198,8 @@ def all_tunnels(space):
                     for b in range(4):
                         ints[t, b], ints[t, 4 + b] = region[b], -1
                         floats[t, 5 + b] = 0.0
-                    ints[t, 8] = keep
-                    floats[t, 0] = scale_at(space, i, j, k, s, u)
+                    ints[t, TUNNEL_KEPT] = keep
+                    floats[t, HAND_LEVEL] = scale_at(space, i, j, k, s, u)
                     configuration(space, i, j, k, s, u, floats[t], 1)
                     if ended == LANDED:
                         for b in range(4):
@@ -196,4 +211,4 @@ def all_tunnels(space):
                     t += 1
                     if not valley:
                         break  # on a diagonal either side will do
-    return ints[:t], floats[:t]
+    return Tunnels(ints[:t], floats[:t])

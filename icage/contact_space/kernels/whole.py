@@ -3,10 +3,13 @@
 # pyright: basic
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import types
 from numba.typed import Dict
 
+from icage.contact_space.kernels.columns import NODE_S, NODE_SIGMA, NODE_U
 from icage.contact_space.kernels.explore import configuration, longer, region_key
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
@@ -17,6 +20,13 @@ from icage.contact_space.kernels.rectangle import (
     seam_value,
 )
 from icage.kernels.compiled import compiled
+
+
+class Seams(NamedTuple):
+    """Seams of the whole graph: edges (e, 2) = from, to and levels (e,)."""
+
+    edges: np.ndarray
+    levels: np.ndarray
 
 
 @compiled
@@ -39,18 +49,16 @@ def all_regions(space):
                     low, s, u, s_too, u_too = least_of_region(space, i, j, k, corners, count)
                     known[region_key(space, i, j, k, c)] = r
                     regions[r, 0], regions[r, 1], regions[r, 2], regions[r, 3] = i, j, k, c
-                    nodes[r, 0], nodes[r, 1], nodes[r, 2] = (
-                        low,
-                        0.5 * (s + s_too),
-                        0.5 * (u + u_too),
-                    )
+                    nodes[r, NODE_SIGMA] = low
+                    nodes[r, NODE_S] = 0.5 * (s + s_too)
+                    nodes[r, NODE_U] = 0.5 * (u + u_too)
                     r += 1
     return regions[:r], nodes[:r], known
 
 
 @compiled
 def all_seams(space, regions, known):
-    """Seams of the whole graph: edges (e, 2) = from, to and levels (e,)."""
+    """Seams of the whole graph."""
     edges, values = np.empty((1024, 2), np.int64), np.empty((1024, 1))
     corners, spare = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
     targets = np.empty((2, 4), np.int64)
@@ -70,7 +78,7 @@ def all_seams(space, regions, known):
                     edges, values = longer(edges), longer(values)
                 edges[e, 0], edges[e, 1], values[e, 0] = r, known[key], value
                 e += 1
-    return edges[:e], values[:e, 0].copy()
+    return Seams(edges[:e], values[:e, 0].copy())
 
 
 @compiled
@@ -79,7 +87,7 @@ def hands_at(space, regions, nodes):
     hands = np.empty((len(regions), 4))
     for r in range(len(regions)):
         configuration(
-            space, regions[r, 0], regions[r, 1], regions[r, 2], nodes[r, 1], nodes[r, 2],
-            hands[r], 0,
+            space, regions[r, 0], regions[r, 1], regions[r, 2], nodes[r, NODE_S],
+            nodes[r, NODE_U], hands[r], 0,
         )  # fmt: skip
     return hands

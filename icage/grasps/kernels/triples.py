@@ -4,25 +4,64 @@
 from __future__ import annotations
 
 import math
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from icage.kernels.compiled import compiled
 
 _CORNERS = 16
+"""Room for the corners of a set of points of concurrency: a square cut by six planes."""
+
+_LEAST_SHARE = 1e-6
+"""[1] A finger whose share of the force is no larger than this carries none."""
+
+_NO_TRIANGLE = 1e-3
+"""[1] Contacts on a triangle flatter than this (twice its area over the square of its shortest
+side) make no hand."""
+
+_NOTHING = 1e-300
+"""[unit] What is divided by instead of a distance 0."""
+
+
+class FeatureKind(IntEnum):
+    """Where a finger carries force: on an edge, or at a concave vertex."""
+
+    EDGE = 0
+    VERTEX = 1
+
+
+EDGE, VERTEX = FeatureKind
+
+
+class ContactPoint(NamedTuple):
+    """A finger position and its unit inward force."""
+
+    x: float
+    y: float
+    f_x: float
+    f_y: float
+
+
+class Triples(NamedTuple):
+    """Triples (n, 3) of features, counterclockwise, and a point (n, 2) of concurrency for each."""
+
+    triples: np.ndarray
+    points: np.ndarray
 
 
 @compiled
 def contact_at(kind, point, normal, px, py):
-    """Finger position and unit inward force (x, y, f_x, f_y) for lines of force through P."""
+    """Finger position and unit inward force for lines of force through P."""
     dx = px - point[0]
     dy = py - point[1]
     along = normal[0] * dx + normal[1] * dy
-    if kind == 0:  # edge: the foot of P
-        return px - along * normal[0], py - along * normal[1], normal[0], normal[1]
-    size = max(math.hypot(dx, dy), 1e-300)
+    if kind == EDGE:  # the foot of P
+        return ContactPoint(px - along * normal[0], py - along * normal[1], normal[0], normal[1])
+    size = max(math.hypot(dx, dy), _NOTHING)
     side = 1.0 if along > 0.0 else -1.0
-    return point[0], point[1], side * dx / size, side * dy / size
+    return ContactPoint(point[0], point[1], side * dx / size, side * dy / size)
 
 
 @compiled
@@ -37,7 +76,7 @@ def squeezes(x, y, fx, fy):
     c = fx[0] * fy[1] - fy[0] * fx[1]
     if a + b + c < 0.0:
         a, b, c = -a, -b, -c
-    if min(a, b, c) <= 1e-6:
+    if min(a, b, c) <= _LEAST_SHARE:
         return False
     work = (
         a * (fx[0] * x[0] + fy[0] * y[0])
@@ -82,8 +121,8 @@ def _cut(planes, f, qx, qy, n, ox, oy):
 def feasible_triples(kind, point, normal, planes, middle, reach, apart):
     """All unordered triples with a concurrency point P that balances and squeezes.
 
-    Returns (triples (n, 3), points (n, 2)): features in counterclockwise order of their contacts,
-    and one P each, well inside the set of possible ones. ``apart`` is the least finger distance.
+    The features are in counterclockwise order of their contacts, and P is well inside the set of
+    possible ones. ``apart`` is the least finger distance.
     """
     n = len(kind)
     triples = np.empty((1024, 3), np.int64)
@@ -138,7 +177,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, apart):
                         math.hypot(x[2] - x[1], y[2] - y[1]),
                         math.hypot(x[0] - x[2], y[0] - y[2]),
                     )
-                    if near < apart or abs(area) < 1e-3 * near * near:
+                    if near < apart or abs(area) < _NO_TRIANGLE * near * near:
                         continue
                     if not squeezes(x, y, fx, fy):
                         continue
@@ -151,4 +190,4 @@ def feasible_triples(kind, point, normal, planes, middle, reach, apart):
                     points[count, 0], points[count, 1] = px, py
                     count += 1
                     break
-    return triples[:count], points[:count]
+    return Triples(triples[:count], points[:count])

@@ -54,8 +54,8 @@ def test_a_pass_off_by_1e_5_in_the_cells_is_seen(monkeypatch: pytest.MonkeyPatch
     explore = icage.cells.free_space.explore
 
     def off(*args: Any) -> Any:
-        outcome, level, *rest = explore(*args)
-        return outcome, level * (1.0 + 1e-5), *rest
+        found = explore(*args)
+        return found._replace(level=found.level * (1.0 + 1e-5))
 
     monkeypatch.setattr(icage.cells.free_space, "explore", off)
     assert differing() == list(NAMES)
