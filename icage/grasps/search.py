@@ -25,7 +25,14 @@ from icage.discs.offsets import offsets
 from icage.errors import GraspError, HandError, InputError
 from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
 from icage.geometry.near_frame import NearFrame
-from icage.grasps.features import EDGE, VERTEX, Features, balanced_triples, features_of
+from icage.grasps.features import (
+    EDGE,
+    VERTEX,
+    Features,
+    balanced_triples,
+    features_of,
+    further_points,
+)
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE
@@ -46,6 +53,9 @@ _SEARCH_LIMIT = 20_000
 _CHUNK = 64
 _MOST_TRIPLES = 20_000
 """Triples that are tried, a random choice if there are more; how many are left out is told."""
+
+_FURTHER = 12
+"""Points of concurrency at which a triple is tried before it is given up."""
 
 _MORE_POINTS = 8
 _PROMISING = 300
@@ -134,7 +144,7 @@ class GraspEvaluator:
     def evaluate(
         self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)
     ) -> Candidate | None:
-        """Levels of the grasp on these contacts, None if it is no cage (or a poor hand)."""
+        """The grasp next to these contacts and its levels, None if no cage (or a poor hand)."""
         try:
             hand = HandShape.from_contacts(contacts)
         except HandError:
@@ -161,13 +171,21 @@ class GraspEvaluator:
             return None
         score = (first if self.wanted.aim == "first" else top) / target.sigma_0
         a, b, c = triple
-        return Candidate(contacts, (a, b, c), target.sigma_0, first, top, score)
+        own = free_space.contacts(target.at)
+        return Candidate(own, (a, b, c), target.sigma_0, first, top, score)
 
     def at(self, triple: IntArray, p: FloatArray) -> Candidate | None:
         """The grasp of three features whose lines of force meet at P."""
         if not self.features.allows(triple, p):
             return None
         return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
+
+    def elsewhere(self, triple: IntArray) -> list[_Found]:
+        """The grasps of a triple at a few points of concurrency all over its set."""
+        fair = (_WIDEST, _FLATTEST)
+        jobs = further_points(self.features, self.outline, self.apart, triple, fair)
+        few = np.linspace(0, len(jobs) - 1, min(_FURTHER, len(jobs))).round().astype(int)
+        return [(self.at(*jobs[k]), jobs[k][1]) for k in few]
 
     def jobs(self, rng: np.random.Generator) -> list[_Job]:
         """A triple of features and a point of concurrency each: where the search starts.
@@ -234,6 +252,17 @@ def _try_chunk(jobs: list[_Job]) -> _Done:
     assert _evaluator is not None
     before = _evaluator.broken_off
     found = [(_evaluator.at(triple, p), p) for triple, p in jobs]
+    return found, _evaluator.broken_off - before
+
+
+def _elsewhere_chunk(jobs: list[_Job]) -> _Done:
+    """The best that each triple has anywhere, for those that have nothing where they were tried."""
+    assert _evaluator is not None
+    before = _evaluator.broken_off
+    found: list[_Found] = []
+    for triple, p in jobs:
+        good = _ranked(_evaluator.elsewhere(triple))
+        found.append(good[0] if good else (None, p))
     return found, _evaluator.broken_off - before
 
 
@@ -306,7 +335,10 @@ def ranked_grasps(
     outline = frame.outline_into(outline)
     evaluator = GraspEvaluator(outline, finger_radius, wanted)
     with _Workers(outline, finger_radius, wanted, workers, evaluator) as pool:
-        found = pool.run(_try_chunk, evaluator.jobs(rng), "every triple", progress)
+        jobs = evaluator.jobs(rng)
+        found = pool.run(_try_chunk, jobs, "every triple", progress)
+        without = [job for job, (c, _) in zip(jobs, found, strict=True) if c is None]
+        found += pool.run(_elsewhere_chunk, without, "elsewhere", progress)
         ranked = _ranked(found)
         more: list[_Job] = []
         for candidate, p in ranked[:_PROMISING]:
@@ -419,7 +451,7 @@ class _Workers:
         stage: str,
         progress: Progress,
     ) -> list[_Found]:
-        size = _CHUNK if work is _try_chunk else 1
+        size = 1 if work is _improve_chunk else _CHUNK
         chunks = [jobs[k : k + size] for k in range(0, len(jobs), size)]
         results = self._pool.map(work, chunks) if self._pool else map(work, chunks)
         found: list[_Found] = []
