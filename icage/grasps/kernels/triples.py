@@ -14,7 +14,6 @@ _PARTS = 16
 """Most parts into which a side of a triangle of the admissible set is cut."""
 
 
-
 @compiled
 def contact_at(kind, point, normal, px, py):
     """Finger position and unit inward force (x, y, f_x, f_y) for lines of force through P."""
@@ -82,7 +81,7 @@ def _cut(planes, f, qx, qy, n, ox, oy):
 
 
 @compiled
-def _squeezing_area(kind, point, normal, a, b, c, px, py, apart, x, y, fx, fy):
+def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy):
     """Twice the signed area of the contacts for lines of force through P, 0 if they are no grasp.
 
     ``apart`` is the least finger distance. Fills in contacts and forces, (3,) each.
@@ -90,6 +89,11 @@ def _squeezing_area(kind, point, normal, a, b, c, px, py, apart, x, y, fx, fy):
     for s in range(3):
         f = a if s == 0 else (b if s == 1 else c)
         x[s], y[s], fx[s], fy[s] = contact_at(kind[f], point[f], normal[f], px, py)
+    for s in range(3):
+        f = a if s == 0 else (b if s == 1 else c)
+        for side in range(2):
+            if planes[f, side, 0] * px + planes[f, side, 1] * py < planes[f, side, 2]:
+                return 0.0  # in a set of no width, by rounding
     area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
     near = min(
         math.hypot(x[1] - x[0], y[1] - y[0]),
@@ -124,8 +128,8 @@ def _spread(qx, qy, n, step):
     for k in range(n):
         h = k + 1 if k + 1 < n else 0
         ux, uy, vx, vy = qx[k] - cx, qy[k] - cy, qx[h] - cx, qy[h] - cy
-        size = math.sqrt(abs(ux * vy - uy * vx))
-        parts = min(_PARTS, max(2, int(math.ceil(size / step))))
+        size = max(math.hypot(ux, uy), math.hypot(vx, vy))
+        parts = min(_PARTS, max(3, int(math.ceil(size / step))))
         for i in range(parts):
             for j in range(parts - i):
                 s, t = (i + 1.0 / 3.0) / parts, (j + 1.0 / 3.0) / parts
@@ -187,7 +191,7 @@ def points_of_triple(
     count = 0
     for k in range(len(tried)):
         area = _squeezing_area(
-            kind, point, normal, triple[0], triple[1], triple[2], tried[k, 0], tried[k, 1],
+            kind, point, normal, planes, triple[0], triple[1], triple[2], tried[k, 0], tried[k, 1],
             apart, x, y, fx, fy,
         )  # fmt: skip
         if area != 0.0 and _is_fair(x, y, area, widest, flattest):
@@ -253,7 +257,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apa
                     px = cx if k == 0 else 0.5 * (cx + q3x[k - 1])
                     py = cy if k == 0 else 0.5 * (cy + q3y[k - 1])
                     area = _squeezing_area(
-                        kind, point, normal, a, b, c, px, py, apart, x, y, fx, fy
+                        kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
                     )
                     if area != 0.0:
                         break
@@ -265,7 +269,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apa
                     for k in range(len(tried)):
                         px, py = tried[k, 0], tried[k, 1]
                         area = _squeezing_area(
-                            kind, point, normal, a, b, c, px, py, apart, x, y, fx, fy
+                            kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
                         )
                         if area != 0.0:
                             break
