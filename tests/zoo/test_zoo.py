@@ -380,6 +380,7 @@ LAWS: dict[str, Callable[[Specimen], None]] = {
 }
 """Every public function of today: a new one is one line."""
 
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", [shape.name for shape in VALID])
 def test_law(name: str, law: str) -> None:
