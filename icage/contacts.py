@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, real_numbers
 from icage.errors import GraspError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
@@ -32,7 +32,7 @@ def as_contacts(contacts: ArrayLike) -> FloatArray:
     (3, 2)
     """
     try:
-        points = np.array(contacts, dtype=np.float64)
+        points = real_numbers(contacts)
     except (TypeError, ValueError) as error:
         raise GraspError(
             f"contacts are a {type(contacts).__name__}; three finger centres [x, y] are needed"

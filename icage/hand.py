@@ -14,11 +14,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from icage.arrays import ComplexArray, FloatArray, read_only
+from icage.arrays import ComplexArray, FloatArray, read_only, real_numbers
 from icage.errors import HandError, PlacementError
 
 _FLATTEST = 1e-6
-"""[1] Smallest height of the unit triangle over its longest side that we accept as a triangle."""
+"""[1] Least height over the longest side, as a part of that side, that we accept as a triangle: of
+the triangle alone, whichever finger is called the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +50,15 @@ class HandShape:
         if not cmath.isfinite(z_3):
             raise HandError(f"the hand's third finger is {z_3}; finite coordinates are needed")
         longest = max(1.0, abs(z_3), abs(z_3 - 1.0))
-        if z_3.imag < 0.0 and -z_3.imag > _FLATTEST * longest:
+        height = z_3.imag / longest / longest  # twice the area, for a side 1-2 of length 1
+        if height < -_FLATTEST:
             raise HandError(
                 "the fingers 1, 2, 3 are clockwise; give them counterclockwise (swap two of them)"
             )
-        if z_3.imag <= _FLATTEST * longest:
+        if height <= _FLATTEST:
             raise HandError(
                 "the three fingers are collinear or coincident "
-                f"(height over longest side {z_3.imag / longest:.3g}; above {_FLATTEST:g} needed)"
+                f"(height over longest side {height:.3g}; above {_FLATTEST:g} needed)"
             )
         object.__setattr__(self, "z_3", z_3)
         z = np.array([0.0, 1.0, z_3], dtype=np.complex128)
@@ -65,7 +67,11 @@ class HandShape:
     @classmethod
     def from_contacts(cls, contacts: FloatArray) -> HandShape:
         """Shape of the triangle on three points, (3, 2), fingers 1, 2, 3 counterclockwise."""
-        points = np.asarray(contacts, dtype=np.float64)
+        try:
+            points = real_numbers(contacts)
+        except (TypeError, ValueError) as error:
+            found = type(contacts).__name__
+            raise HandError(f"three finite points (x, y) are needed, found a {found}") from error
         if points.shape != (3, 2) or not np.isfinite(points).all():
             raise HandError(f"three finite points (x, y) are needed, found shape {points.shape}")
         side_12 = complex(*(points[1] - points[0]))

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.distance import pdist
 from shapely.validation import explain_validity
 
-from icage.arrays import FloatArray, read_only
+from icage.arrays import FloatArray, read_only, real_numbers
 from icage.errors import GeometryError, OutlineError
 from icage.values import Value
 
@@ -132,7 +132,7 @@ class Outline(Value):
 
 def _as_points(vertices: ArrayLike) -> FloatArray:
     try:
-        points = np.array(vertices, dtype=np.float64)
+        points = real_numbers(vertices)
     except (TypeError, ValueError) as error:
         raise OutlineError("outline vertices must be pairs of numbers [x, y]") from error
     if points.ndim != 2 or points.shape[1:] != (2,):

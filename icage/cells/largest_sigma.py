@@ -76,5 +76,5 @@ def _on_two_edges(
     with np.errstate(divide="ignore", invalid="ignore"):
         x = (r_b[:, None] * g_c.imag - g_b.imag[:, None] * r_c) / det
         y = (g_b.real[:, None] * r_c - r_b[:, None] * g_c.real) / det
-    w = (x + 1j * y).ravel()
+        w = (x + 1j * y).ravel()
     return w[np.isfinite(w)]

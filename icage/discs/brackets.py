@@ -39,6 +39,9 @@ RESOLUTIONS = (16, 24, 32)
 FINER = (64, 128, 256)
 """... and those that follow while the bracket of sigma_max is too wide."""
 
+_LAST_DIGIT = 1e-12
+"""[1] Levels of two polygons this close are one: rounding of the same straight edges."""
+
 
 @dataclass(frozen=True, slots=True)
 class ArcLocalCage:
@@ -64,7 +67,7 @@ def plan_discs(
         inner = offsets(outline, radius, 32).inner
         return replace(method.cage(inner, hand, contacts, outline, radius), contacts=contacts)
     # of equal levels the finest polygon, whatever the last digit says
-    top = max(local_cage.sigma_max for local_cage in lower) * (1.0 - 1e-12)
+    top = max(local_cage.sigma_max for local_cage in lower) * (1.0 - _LAST_DIGIT)
     basis = max(
         (k for k in lower if k.sigma_max >= top), key=lambda local_cage: local_cage.segments
     )
@@ -165,6 +168,8 @@ def _bracketed(
     if all(local_cage.sigma_first == local_cage.sigma_max for local_cage in local_cages):
         # nothing comes before the escape anywhere: then its bracket, which is narrower, holds
         first, first_upper = low, high
+    elif first >= low * (1.0 - _LAST_DIGIT):
+        first = low  # an escape level of another polygon, an ulp lower
     converged = first == first_upper or first_upper / first - 1.0 <= SIGMA_FIRST_SPREAD
     grasps = _on_true_curve(cage, true)
     path, gap = cage.escape_path, cage.min_finger_gap

@@ -39,6 +39,9 @@ angle that the rounding of a distant drawing has opened is split as the right an
 _GRID = 1e-15
 """[diameter] Noding grid of the union."""
 
+_SLIVER = 1e-13
+"""[diameter] A hole of the union this narrow on average is rounding and no pocket."""
+
 
 class Offsets(NamedTuple):
     """The grown object between two polygons."""
@@ -155,7 +158,8 @@ def _split(
     ends are the strips' own corners and the fan reaches into both strips.
     """
     wanted = [t for t in (_along(arc, x) for x in through) if t is not None]
-    on_arc = arc.vertex + radius * _unit(arc.start + _stops(arc.turn, segments, _resting(wanted)))
+    resting = _resting(wanted, arc.turn)
+    on_arc = arc.vertex + radius * _unit(arc.start + _stops(arc.turn, segments, resting))
     at = arc.start + _stops(arc.turn, segments, wanted)
     step = np.diff(at)
     reach = radius / np.cos(0.5 * step)
@@ -167,13 +171,16 @@ def _split(
     return chords, tangents, float(step.max())
 
 
-def _resting(wanted: list[float]) -> list[float]:
-    """Both ends of a short chord round every contact, shorter where two contacts are close."""
+def _resting(wanted: list[float], turn: float) -> list[float]:
+    """Both ends of a short chord round every contact, shorter where two contacts are close.
+
+    Near an end of the arc it is shorter too: cut off there, it would have another normal.
+    """
     ends: list[float] = []
     ordered = sorted(wanted)
     for k, t in enumerate(ordered):
         room = [abs(t - u) / 3.0 for u in ordered[max(0, k - 1) : k + 2] if u != t]
-        half = min(_RESTING, *room) if room else _RESTING
+        half = min(_RESTING, t, turn - t, *room)
         ends += [t - half, t + half]
     return ends
 
@@ -213,7 +220,8 @@ def _exterior(
         raise GeometryError(
             f"growing the outline by {radius} left a crack: a vertex only {gap.min()} away"
         )
-    holes = [h for h in grown.interiors if shapely.Polygon(h).area > grid * outline.diameter]
+    thin = _SLIVER * (outline.diameter + radius)
+    holes = [h for h in grown.interiors if shapely.Polygon(h).area > thin * h.length]
     return Outline.computed(ring), len(holes)
 
 

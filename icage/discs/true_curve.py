@@ -6,10 +6,11 @@ centres at distance >= radius from the edges and vertices they touch. Our own.
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import minimize, nnls
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GraspError, HandError
@@ -30,6 +31,13 @@ _TRIES = 4
 _COLLAPSED = 0.5
 """[1] Sigma over that of the contacts given, below which the hand has fallen off its features: the
 true curve is nowhere further from a polygon than a small part of the radius."""
+
+
+_INSIDE = 1e-9
+"""[diameter] A finger may be this far inside a feature; one this near to it touches it."""
+
+_BALANCED = 1e-7
+"""[1] Residual of the forces in a minimum, over the size of the hand."""
 
 
 class Feature(NamedTuple):
@@ -85,16 +93,20 @@ def refine(
         options={"ftol": 1e-15, "maxiter": 200},
         constraints={"type": "ineq", "fun": system.gaps, "jac": system.slopes},
     )  # fmt: skip
-    point = system.polished(np.asarray(answer.x))
-    if point is None or float(system.gaps(point).min()) < -1e-9:
-        return None
-    if np.hypot(*point[2:]) < _COLLAPSED * np.hypot(*start[2:]):
-        return None
-    f = (point[0] + 1j * point[1]) + (point[2] + 1j * point[3]) * hand.z
-    solved = np.column_stack([f.real, f.imag]) * size + origin
-    if float(_depths(outline, radius, solved).max()) > COLLISION * size:
-        return None
-    return solved
+    found = np.asarray(answer.x)
+    # what only comes near without carrying force is at times no part of the minimum; and contacts
+    # that are one already, however flat it is, are not to be lost
+    polished = (system.polished(found, loaded=loaded) for loaded in (False, True))
+    for point in chain(polished, (start,)):
+        if point is None or not system.is_balanced(point):
+            continue
+        if np.hypot(*point[2:]) < _COLLAPSED * np.hypot(*start[2:]):
+            continue
+        f = (point[0] + 1j * point[1]) + (point[2] + 1j * point[3]) * hand.z
+        solved = np.column_stack([f.real, f.imag]) * size + origin
+        if float(_depths(outline, radius, solved).max()) <= COLLISION * size:
+            return contacts.copy() if point is start else solved
+    return None
 
 
 def _depths(outline: Outline, radius: float, contacts: FloatArray) -> FloatArray:
@@ -242,11 +254,27 @@ class _System:
                 hessian -= lam * self._maps[int(k)].T @ flat @ self._maps[int(k)]
         return hessian
 
-    def polished(self, v: FloatArray) -> FloatArray | None:
-        """Newton on stationarity and contact of the features that carry or nearly carry force."""
+    def is_balanced(self, v: FloatArray) -> bool:
+        """Whether pushing forces of touched features balance, and no finger is inside of one."""
+        gaps = self.gaps(v)
+        if not -_INSIDE <= float(gaps.min()) <= _INSIDE:
+            return False
+        _, miss = nnls(self.slopes(v)[gaps <= _INSIDE].T, _half_square_slope(v))
+        return bool(miss <= _BALANCED * np.hypot(*v[2:]))
+
+    def polished(self, v: FloatArray, *, loaded: bool = False) -> FloatArray | None:
+        """Newton on stationarity and contact of the features that carry or nearly carry force.
+
+        ``loaded`` keeps to those that carry some when all forces push.
+        """
         active: IntArray = np.flatnonzero(self.gaps(v) < 1e-7).astype(np.int64)
         if not len(active):
             return None
+        if loaded:
+            pushing, _ = nnls(self.slopes(v)[active].T, _half_square_slope(v))
+            active = active[pushing > 1e-9 * pushing.max()]
+            if not len(active):
+                return None
         slope = self.slopes(v)[active]
         gradient = _half_square_slope(v)
         force: FloatArray = np.linalg.lstsq(slope.T, gradient, rcond=1e-9)[0].astype(np.float64)

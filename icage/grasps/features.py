@@ -13,7 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.grasps.kernels.triples import EDGE, VERTEX, contact_at, feasible_triples
+from icage.grasps.kernels.triples import (
+    EDGE,
+    VERTEX,
+    contact_at,
+    feasible_triples,
+    points_of_triple,
+)
 from icage.outline import Outline
 
 _REACH = 3.0
@@ -26,6 +32,12 @@ _CONCAVE = 1e-6
 _NO_SUM = 1e-9
 """[1] What the sum of two unit normals is divided by at least: at a vertex that turns right back it
 is 0 and has no direction."""
+
+_NEAR = 1.6
+"""[diameter] Nearer than this to the object's middle they are looked for ..."""
+
+_STEP = 0.1
+"""[diameter] ... this far apart, where the middle of the set and its surroundings hold nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +110,26 @@ def balanced_triples(
 
     Complexity: O(n^3) clips of small convex polygons, about 0.2 us each.
     """
+    size = outline.diameter
     return feasible_triples(
         features.kind, features.point, features.normal, features.planes,
-        outline.centroid, _REACH * outline.diameter, apart,
+        outline.centroid, _REACH * size, _NEAR * size, _STEP * size, apart,
     )  # fmt: skip
+
+
+def further_points(
+    features: Features, outline: Outline, apart: float, triple: IntArray, fair: tuple[float, float]
+) -> list[tuple[IntArray, FloatArray]]:
+    """Points of concurrency spread over the whole set of a triple, each with the triple again.
+
+    Its features are in counterclockwise order of their contacts, which depends on the point.
+    ``fair`` are the most that the longest side of the hand may be over the shortest, and the least
+    that its height may be over the longest side.
+    """
+    size = outline.diameter
+    points, turns = points_of_triple(
+        features.kind, features.point, features.normal, features.planes, outline.centroid,
+        _REACH * size, _NEAR * size, _STEP * size, apart, triple, *fair,
+    )  # fmt: skip
+    ways = {1: triple, -1: triple[[0, 2, 1]]}
+    return [(ways[int(turn)], p) for p, turn in zip(points, turns, strict=True)]

@@ -25,10 +25,18 @@ from icage.discs.offsets import offsets
 from icage.errors import GraspError, HandError, InputError
 from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
 from icage.geometry.near_frame import NearFrame
-from icage.grasps.features import EDGE, VERTEX, Features, balanced_triples, features_of
+from icage.grasps.features import (
+    EDGE,
+    VERTEX,
+    Features,
+    balanced_triples,
+    features_of,
+    further_points,
+)
 from icage.hand import HandShape
+from icage.kernels.locate import depth_inside
 from icage.outline import Outline
-from icage.tolerance import NOT_A_CAGE
+from icage.tolerance import FREE_FINGER, NOT_A_CAGE
 
 Aim: TypeAlias = Literal["first", "cage"]
 """What is ranked: sigma_first / sigma_0, or sigma_max / sigma_0."""
@@ -46,6 +54,12 @@ _SEARCH_LIMIT = 20_000
 _CHUNK = 64
 _MOST_TRIPLES = 20_000
 """Triples that are tried, a random choice if there are more; how many are left out is told."""
+
+_FURTHER = 12
+"""Points of concurrency at which a triple is tried before it is given up."""
+
+_FEW = 100
+"""Triples up to which all are tried at so many points."""
 
 _MORE_POINTS = 8
 _PROMISING = 300
@@ -134,7 +148,7 @@ class GraspEvaluator:
     def evaluate(
         self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)
     ) -> Candidate | None:
-        """Levels of the grasp on these contacts, None if it is no cage (or a poor hand)."""
+        """The grasp next to these contacts and its levels, None if no cage (or a poor hand)."""
         try:
             hand = HandShape.from_contacts(contacts)
         except HandError:
@@ -151,6 +165,9 @@ class GraspEvaluator:
         target = find_target(free_space, contacts_as_configuration(free_space, contacts))
         if target is None or target.plateau is not None:
             return None
+        own = free_space.contacts(target.at)
+        if self._leaves_a_finger_free(own):
+            return None
         found = search(free_space, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
         if found.gave_up:
             self.broken_off += 1
@@ -161,13 +178,26 @@ class GraspEvaluator:
             return None
         score = (first if self.wanted.aim == "first" else top) / target.sigma_0
         a, b, c = triple
-        return Candidate(contacts, (a, b, c), target.sigma_0, first, top, score)
+        return Candidate(own, (a, b, c), target.sigma_0, first, top, score)
+
+    def _leaves_a_finger_free(self, contacts: FloatArray) -> bool:
+        """Where two fingers already hold: the best grasps of three lie beside such ones."""
+        middle = contacts.mean(axis=0)
+        depth = depth_inside(self.outline.vertices - middle, contacts - middle, 0.0)
+        return float(depth.min()) < -FREE_FINGER * self.outline.diameter
 
     def at(self, triple: IntArray, p: FloatArray) -> Candidate | None:
         """The grasp of three features whose lines of force meet at P."""
         if not self.features.allows(triple, p):
             return None
         return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
+
+    def elsewhere(self, triple: IntArray) -> list[_Found]:
+        """The grasps of a triple at a few points of concurrency all over its set."""
+        fair = (_WIDEST, _FLATTEST)
+        jobs = further_points(self.features, self.outline, self.apart, triple, fair)
+        few = np.linspace(0, len(jobs) - 1, min(_FURTHER, len(jobs))).round().astype(int)
+        return [(self.at(*jobs[k]), jobs[k][1]) for k in few]
 
     def jobs(self, rng: np.random.Generator) -> list[_Job]:
         """A triple of features and a point of concurrency each: where the search starts.
@@ -234,6 +264,17 @@ def _try_chunk(jobs: list[_Job]) -> _Done:
     assert _evaluator is not None
     before = _evaluator.broken_off
     found = [(_evaluator.at(triple, p), p) for triple, p in jobs]
+    return found, _evaluator.broken_off - before
+
+
+def _elsewhere_chunk(jobs: list[_Job]) -> _Done:
+    """What each triple has anywhere: for those that have nothing where they were tried first."""
+    assert _evaluator is not None
+    before = _evaluator.broken_off
+    found: list[_Found] = []
+    for triple, p in jobs:
+        good = _ranked(_evaluator.elsewhere(triple))
+        found += good or [(None, p)]
     return found, _evaluator.broken_off - before
 
 
@@ -306,7 +347,11 @@ def ranked_grasps(
     outline = frame.outline_into(outline)
     evaluator = GraspEvaluator(outline, finger_radius, wanted)
     with _Workers(outline, finger_radius, wanted, workers, evaluator) as pool:
-        found = pool.run(_try_chunk, evaluator.jobs(rng), "every triple", progress)
+        jobs = evaluator.jobs(rng)
+        found = pool.run(_try_chunk, jobs, "every triple", progress)
+        few = len(jobs) <= _FEW
+        without = [job for job, (c, _) in zip(jobs, found, strict=True) if few or c is None]
+        found += pool.run(_elsewhere_chunk, without, "elsewhere", progress)
         ranked = _ranked(found)
         more: list[_Job] = []
         for candidate, p in ranked[:_PROMISING]:
@@ -315,7 +360,7 @@ def ranked_grasps(
                 more += [(triple, q) for q in _around(p, evaluator, rng)]
         ranked = _ranked(found + pool.run(_try_chunk, more, "promising ones", progress))
         seeds: list[_Job] = [
-            (np.array(c.triple), p) for c, p in _one_per_triple(ranked)[:_IMPROVED]
+            (np.array(c.triple), p) for c, p in _starts(ranked, 0.1 * evaluator.outline.diameter)
         ]
         better = pool.run(_improve_chunk, seeds, "improving", progress)
     best = [c for c, _ in _ranked(better + [(c, p) for c, p in ranked])]
@@ -365,16 +410,22 @@ def _ranked(found: Iterable[_Found]) -> list[tuple[Candidate, FloatArray]]:
     return sorted(good, key=lambda pair: (-pair[0].score, pair[0].triple))
 
 
-def _one_per_triple(
-    ranked: list[tuple[Candidate, FloatArray]],
+def _starts(
+    ranked: list[tuple[Candidate, FloatArray]], apart: float
 ) -> list[tuple[Candidate, FloatArray]]:
-    seen: set[tuple[int, int, int]] = set()
+    """Where the improvement starts: the best of every triple, then others of it if room is left.
+
+    A triple may hold in several places with nothing between; P of two starts are ``apart`` [unit].
+    """
+    first: dict[tuple[int, int, int], list[FloatArray]] = {}
     kept: list[tuple[Candidate, FloatArray]] = []
+    others: list[tuple[Candidate, FloatArray]] = []
     for candidate, p in ranked:
-        if candidate.triple not in seen:
-            seen.add(candidate.triple)
-            kept.append((candidate, p))
-    return kept
+        points = first.setdefault(candidate.triple, [])
+        if all(float(np.hypot(*(p - q))) >= apart for q in points):
+            (others if points else kept).append((candidate, p))
+            points.append(p)
+    return (kept + others)[:_IMPROVED]
 
 
 def same_place(outline: Outline, a: FloatArray, b: FloatArray) -> bool:
@@ -419,7 +470,7 @@ class _Workers:
         stage: str,
         progress: Progress,
     ) -> list[_Found]:
-        size = _CHUNK if work is _try_chunk else 1
+        size = 1 if work is _improve_chunk else _CHUNK
         chunks = [jobs[k : k + size] for k in range(0, len(jobs), size)]
         results = self._pool.map(work, chunks) if self._pool else map(work, chunks)
         found: list[_Found] = []

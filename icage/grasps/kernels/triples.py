@@ -51,6 +51,17 @@ class Triples(NamedTuple):
     points: np.ndarray
 
 
+class TriplePoints(NamedTuple):
+    """Points (n, 2) of concurrency of a triple; ``turns`` (n,): 1 for contacts in its order, or -1."""
+
+    points: np.ndarray
+    turns: np.ndarray
+
+
+_PARTS = 16
+"""Most parts into which a side of a triangle of the admissible set is cut."""
+
+
 @compiled
 def contact_at(kind, point, normal, px, py):
     """Finger position and unit inward force for lines of force through P."""
@@ -118,11 +129,133 @@ def _cut(planes, f, qx, qy, n, ox, oy):
 
 
 @compiled
-def feasible_triples(kind, point, normal, planes, middle, reach, apart):
+def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy):
+    """Twice the signed area of the contacts for lines of force through P, 0 if they are no grasp.
+
+    ``apart`` is the least finger distance. Fills in contacts and forces, (3,) each.
+    """
+    for s in range(3):
+        f = a if s == 0 else (b if s == 1 else c)
+        x[s], y[s], fx[s], fy[s] = contact_at(kind[f], point[f], normal[f], px, py)
+    for s in range(3):
+        f = a if s == 0 else (b if s == 1 else c)
+        for side in range(2):
+            if planes[f, side, 0] * px + planes[f, side, 1] * py < planes[f, side, 2]:
+                return 0.0  # in a set of no width, by rounding
+    area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+    near = min(
+        math.hypot(x[1] - x[0], y[1] - y[0]),
+        math.hypot(x[2] - x[1], y[2] - y[1]),
+        math.hypot(x[0] - x[2], y[0] - y[2]),
+    )
+    if near < apart or abs(area) < _NO_TRIANGLE * near * near:
+        return 0.0
+    return area if squeezes(x, y, fx, fy) else 0.0
+
+
+@compiled
+def _is_fair(x, y, area, widest, flattest):
+    """Whether the hand on the contacts is neither too long nor too flat, ratios of its sides."""
+    one = math.hypot(x[1] - x[0], y[1] - y[0])
+    two = math.hypot(x[2] - x[1], y[2] - y[1])
+    three = math.hypot(x[0] - x[2], y[0] - y[2])
+    longest = max(one, two, three)
+    return longest <= widest * min(one, two, three) and abs(area) >= flattest * longest * longest
+
+
+@compiled
+def _spread(qx, qy, n, step):
+    """Points inside a convex polygon, (k, 2), about ``step`` apart; a few in a small one too."""
+    cx = 0.0
+    cy = 0.0
+    for k in range(n):
+        cx += qx[k] / n
+        cy += qy[k] / n
+    found = np.empty((n * _PARTS * (_PARTS + 1) // 2, 2))
+    count = 0
+    for k in range(n):
+        h = k + 1 if k + 1 < n else 0
+        ux, uy, vx, vy = qx[k] - cx, qy[k] - cy, qx[h] - cx, qy[h] - cy
+        size = max(math.hypot(ux, uy), math.hypot(vx, vy))
+        parts = min(_PARTS, max(3, int(math.ceil(size / step))))
+        for i in range(parts):
+            for j in range(parts - i):
+                s, t = (i + 1.0 / 3.0) / parts, (j + 1.0 / 3.0) / parts
+                found[count, 0] = cx + s * ux + t * vx
+                found[count, 1] = cy + s * uy + t * vy
+                count += 1
+    return found[:count]
+
+
+@compiled
+def _near_part(qx, qy, n, middle, near, ox, oy):
+    """Clip a polygon to the square of half side ``near`` about the middle; its new count."""
+    for s in range(4):
+        a = 1.0 if s == 0 else (-1.0 if s == 1 else 0.0)
+        b = 1.0 if s == 2 else (-1.0 if s == 3 else 0.0)
+        n = _clip(qx, qy, n, a, b, a * middle[0] + b * middle[1] - near, ox, oy)
+        qx[:n] = ox[:n]
+        qy[:n] = oy[:n]
+        if n < 3:
+            return 0
+    return n
+
+
+@compiled
+def points_of_triple(
+    kind, point, normal, planes, middle, reach, near, step, apart, triple, widest, flattest
+):
+    """Points of concurrency spread over all that a triple has: (n, 2), and (n,) orientations.
+
+    Those that balance and squeeze and give a fair hand: ``step`` apart within ``near`` of the
+    middle, a few beyond, up to ``reach``. Orientation 1: the contacts are counterclockwise in the
+    order of the triple; -1: clockwise.
+    """
+    qx = np.empty(_CORNERS)
+    qy = np.empty(_CORNERS)
+    ox = np.empty(_CORNERS)
+    oy = np.empty(_CORNERS)
+    x = np.empty(3)
+    y = np.empty(3)
+    fx = np.empty(3)
+    fy = np.empty(3)
+    qx[0], qy[0] = middle[0] - reach, middle[1] - reach
+    qx[1], qy[1] = middle[0] + reach, middle[1] - reach
+    qx[2], qy[2] = middle[0] + reach, middle[1] + reach
+    qx[3], qy[3] = middle[0] - reach, middle[1] + reach
+    m = 4
+    for k in range(3):
+        if m:
+            m = _cut(planes, triple[k], qx, qy, m, ox, oy)
+    if m == 0:
+        return TriplePoints(np.empty((0, 2)), np.empty(0, np.int64))
+    # a step longer than the whole square: few points to a corner
+    tried = _spread(qx, qy, m, 4.0 * reach)
+    m = _near_part(qx, qy, m, middle, near, ox, oy)
+    if m:
+        tried = np.concatenate((tried, _spread(qx, qy, m, step)))
+    points = np.empty_like(tried)
+    turns = np.empty(len(tried), np.int64)
+    count = 0
+    for k in range(len(tried)):
+        area = _squeezing_area(
+            kind, point, normal, planes, triple[0], triple[1], triple[2], tried[k, 0], tried[k, 1],
+            apart, x, y, fx, fy,
+        )  # fmt: skip
+        if area != 0.0 and _is_fair(x, y, area, widest, flattest):
+            points[count] = tried[k]
+            turns[count] = 1 if area > 0.0 else -1
+            count += 1
+    return TriplePoints(points[:count], turns[:count])
+
+
+@compiled
+def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apart):
     """All unordered triples with a concurrency point P that balances and squeezes.
 
-    The features are in counterclockwise order of their contacts, and P is well inside the set of
-    possible ones. ``apart`` is the least finger distance.
+    Returns (triples (n, 3), points (n, 2)): features in counterclockwise order of their contacts,
+    and one P each, well inside the set of possible ones where that will do, else the first of
+    those ``step`` apart within ``near`` of the middle. ``apart`` is the least finger distance.
     """
     n = len(kind)
     triples = np.empty((1024, 3), np.int64)
@@ -165,29 +298,37 @@ def feasible_triples(kind, point, normal, planes, middle, reach, apart):
                 for k in range(m3):
                     cx += q3x[k] / m3
                     cy += q3y[k] / m3
+                area = 0.0
+                px = cx
+                py = cy
                 for k in range(m3 + 1):
                     px = cx if k == 0 else 0.5 * (cx + q3x[k - 1])
                     py = cy if k == 0 else 0.5 * (cy + q3y[k - 1])
-                    for s in range(3):
-                        f = a if s == 0 else (b if s == 1 else c)
-                        x[s], y[s], fx[s], fy[s] = contact_at(kind[f], point[f], normal[f], px, py)
-                    area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
-                    near = min(
-                        math.hypot(x[1] - x[0], y[1] - y[0]),
-                        math.hypot(x[2] - x[1], y[2] - y[1]),
-                        math.hypot(x[0] - x[2], y[0] - y[2]),
+                    area = _squeezing_area(
+                        kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
                     )
-                    if near < apart or abs(area) < _NO_TRIANGLE * near * near:
-                        continue
-                    if not squeezes(x, y, fx, fy):
-                        continue
-                    if count == len(triples):
-                        triples = np.concatenate((triples, np.empty_like(triples)))
-                        points = np.concatenate((points, np.empty_like(points)))
-                    triples[count, 0] = a
-                    triples[count, 1] = b if area > 0.0 else c
-                    triples[count, 2] = c if area > 0.0 else b
-                    points[count, 0], points[count, 1] = px, py
-                    count += 1
-                    break
+                    if area != 0.0:
+                        break
+                # three edges push in the same directions and do the same work wherever P is
+                edges = kind[a] == EDGE and kind[b] == EDGE and kind[c] == EDGE
+                if area == 0.0 and not (edges and not squeezes(x, y, fx, fy)):
+                    m3 = _near_part(q3x, q3y, m3, middle, near, ox, oy)
+                    tried = _spread(q3x, q3y, m3, step)
+                    for k in range(len(tried)):
+                        px, py = tried[k, 0], tried[k, 1]
+                        area = _squeezing_area(
+                            kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
+                        )
+                        if area != 0.0:
+                            break
+                if area == 0.0:
+                    continue
+                if count == len(triples):
+                    triples = np.concatenate((triples, np.empty_like(triples)))
+                    points = np.concatenate((points, np.empty_like(points)))
+                triples[count, 0] = a
+                triples[count, 1] = b if area > 0.0 else c
+                triples[count, 2] = c if area > 0.0 else b
+                points[count, 0], points[count, 1] = px, py
+                count += 1
     return Triples(triples[:count], points[:count])
