@@ -132,8 +132,8 @@ def _cases(args: argparse.Namespace) -> tuple[tuple[Case, ...], str]:
 
 
 _HEAD = (
-    "grasp", "set", "sigma_first", "sigma_max", "trials", "target", "other", "escaped", "lost",
-    "worst position", "worst angle", "deepest",
+    "grasp", "set", "sigma_first", "sigma_max", "trials", "target", "other", "escaped",
+    "not settled", "worst position", "worst angle", "deepest",
 )  # fmt: skip
 
 
@@ -154,8 +154,8 @@ def summary(done: Replay, name: str, folder: Path) -> list[str]:
         f"{first.case.outline.diameter:.6g} {first.case.unit}, fingers of radius "
         f"{first.case.finger_radius:g} {first.case.unit}, seed {done.seed}",
         *table,
-        "sigma over sigma_0; position and depth over the diameter, angle in rad; lost = jammed, "
-        "diverged, timed out or unmatched",
+        "sigma over sigma_0; position and depth over the diameter, angle in rad; not settled = "
+        "jammed, diverged, timed out or unmatched",
         *_searches(done),
         *(f"not replayed: {text}" for text in done.skipped),
         f"{'FAILED' if done.failures else 'held'}: {_verdict(done)}; files in {folder}",
@@ -164,7 +164,7 @@ def summary(done: Replay, name: str, folder: Path) -> list[str]:
 
 def _row(run: Any) -> tuple[str, ...]:
     counts, cage = run.counts, run.cage
-    lost = sum(counts[name] for name in ("jammed", "diverged", "timed_out", "unmatched"))
+    not_settled = sum(counts[name] for name in ("jammed", "diverged", "timed_out", "unmatched"))
     reached = run.verdicts.outcome == 0
     worst = [
         f"{values[reached].max():.1e}" if reached.any() else "-"
@@ -176,7 +176,7 @@ def _row(run: Any) -> tuple[str, ...]:
     ]
     return (
         run.case.name, run.which, *levels, str(len(run.closings)), str(counts["target"]),
-        str(counts["other_grasp"]), str(counts["escaped"]), str(lost), *worst,
+        str(counts["other_grasp"]), str(counts["escaped"]), str(not_settled), *worst,
         f"{run.closings.penetration_max.max():.1e}",
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from experiments.io.options import add_json, check_output, file_name, row_index
 
 if TYPE_CHECKING:
-    from experiments.replay.recorded import Rerun
+    from experiments.replay.recorded_trial import Rerun
 
 
 def add_parser(subparsers: Any) -> None:
@@ -57,14 +57,14 @@ def run(args: argparse.Namespace) -> int:
 
     if (folder / "study.json").is_file():
         from experiments.study.report import replayed_trial as replayed_words
-        from experiments.study.run import replayed
+        from experiments.study.run import one_trial_again as replayed
 
         again = replayed.rerun_trial(folder, args.index)
         if args.video is not None:
             replayed.film_rerun(again, Path(args.video))
         return _told(args, again, replayed_words.document(again), replayed_words.summary(again))
 
-    from experiments.replay.recorded import (  # only now: they take a second to load
+    from experiments.replay.recorded_trial import (  # only now: they take a second to load
         read_trial,
         rerun,
     )
@@ -126,16 +126,16 @@ def _now(done: Rerun) -> dict[str, Any]:
     from sim.closing.judge import OUTCOMES
 
     closing, verdicts, size = done.closings[0], done.verdicts, done.trial.outline.diameter
-    lost = OUTCOMES[int(verdicts.outcome[0])] == "diverged"
+    diverged = OUTCOMES[int(verdicts.outcome[0])] == "diverged"
     return {
         "outcome": OUTCOMES[int(verdicts.outcome[0])],
         "grasp_id": int(verdicts.grasp_id[0]),
         "steps": closing.steps,
-        "end": None if lost else closing.end.as_array(),
-        "position_error": None if lost else float(verdicts.position_error[0]) * size,
-        "angle_error": None if lost else float(verdicts.angle_error[0]),
-        "penetration_max": None if lost else closing.penetration_max * size,
-        "penetration_rest": None if lost else closing.penetration_rest * size,
+        "end": None if diverged else closing.end.as_array(),
+        "position_error": None if diverged else float(verdicts.position_error[0]) * size,
+        "angle_error": None if diverged else float(verdicts.angle_error[0]),
+        "penetration_max": None if diverged else closing.penetration_max * size,
+        "penetration_rest": None if diverged else closing.penetration_rest * size,
     }
 
 

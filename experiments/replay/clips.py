@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from experiments.replay.filmed import Filmed, filmed_of_run
 from experiments.replay.run import Replay, Run
+from experiments.replay.what_is_filmed import Filmed, filmed_of_run
 from icage.arrays import FloatArray
 from icage.hand import Placement
 from sim.closing.judge import OUTCOMES

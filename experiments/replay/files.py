@@ -89,7 +89,7 @@ def trial_table(done: Replay) -> Table:
 def _run_table(number: int, run: Run, seed: int) -> Table:
     count, size = len(run.closings), run.case.outline.diameter
     verdict = query(run.cage, run.starts.placements).verdict
-    lost = np.flatnonzero(run.verdicts.outcome == OUTCOMES.index("diverged"))
+    diverged = np.flatnonzero(run.verdicts.outcome == OUTCOMES.index("diverged"))
     columns: dict[str, Any] = {
         "run": np.full(count, number),
         "grasp": pa.array([run.case.name] * count).dictionary_encode(),
@@ -100,28 +100,28 @@ def _run_table(number: int, run: Run, seed: int) -> Table:
         "verdict": pa.array([VERDICTS[k] for k in verdict]).dictionary_encode(),
         "outcome": pa.array([OUTCOMES[k] for k in run.verdicts.outcome]).dictionary_encode(),
         "grasp_id": run.verdicts.grasp_id,
-        **_pose("end", run.closings.end, lost),
-        "position_error": _known(run.verdicts.position_error * size, lost),
-        "angle_error": _known(run.verdicts.angle_error, lost),
-        "grasp_position_error": _known(run.verdicts.grasp_position_error * size, lost),
-        "grasp_angle_error": _known(run.verdicts.grasp_angle_error, lost),
-        "penetration_max": _known(run.closings.penetration_max * size, lost),
-        "penetration_rest": _known(run.closings.penetration_rest * size, lost),
+        **_pose("end", run.closings.end, diverged),
+        "position_error": _known(run.verdicts.position_error * size, diverged),
+        "angle_error": _known(run.verdicts.angle_error, diverged),
+        "grasp_position_error": _known(run.verdicts.grasp_position_error * size, diverged),
+        "grasp_angle_error": _known(run.verdicts.grasp_angle_error, diverged),
+        "penetration_max": _known(run.closings.penetration_max * size, diverged),
+        "penetration_rest": _known(run.closings.penetration_rest * size, diverged),
         "steps": run.closings.steps,
     }
     return pa.table(columns)
 
 
-def _pose(prefix: str, placements: np.ndarray, lost: Any) -> dict[str, Any]:
+def _pose(prefix: str, placements: np.ndarray, diverged: Any) -> dict[str, Any]:
     names = ("x", "y", "theta", "sigma")
     return {
-        f"{prefix}_{name}": _known(column, lost)
+        f"{prefix}_{name}": _known(column, diverged)
         for name, column in zip(names, placements.T, strict=True)
     }
 
 
-def _known(values: np.ndarray, lost: Any) -> Column:
+def _known(values: np.ndarray, diverged: Any) -> Column:
     """The values, null where a diverged closing left none."""
     mask = np.zeros(len(values), dtype=np.bool_)
-    mask[list(lost)] = True
+    mask[list(diverged)] = True
     return pa.array(np.ascontiguousarray(values), mask=mask)

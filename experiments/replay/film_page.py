@@ -13,7 +13,7 @@ from experiments.figures.drawing.numbers import significant
 from experiments.figures.drawing.object_view import ObjectView
 from experiments.figures.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
 from experiments.figures.drawing.plots import Box, Curve, Level, Plot
-from experiments.replay.filmed import Filmed
+from experiments.replay.what_is_filmed import Filmed
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiments.io.progress import stage_bar
-from experiments.replay.filmed import Filmed, filmed_alone
-from experiments.replay.recorded import Rerun, recorded_cage, recorded_regions
+from experiments.replay.recorded_trial import Rerun, recorded_cage, recorded_regions
 from experiments.replay.video import film_alone
+from experiments.replay.what_is_filmed import Filmed, filmed_alone
 from icage.formats.whole_files import whole_file
 from sim.closing.judge import OUTCOMES
 

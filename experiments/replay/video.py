@@ -19,9 +19,9 @@ from experiments.figures.drawing.hand_view import HandView, window_on
 from experiments.figures.drawing.shapes import tidied
 from experiments.replay.clips import FPS, Clip, clip_alone, clips
 from experiments.replay.film_page import HEIGHT, MAIN, WIDTH, Page
-from experiments.replay.filmed import Filmed
 from experiments.replay.mp4 import write_mp4
 from experiments.replay.run import Replay, Report
+from experiments.replay.what_is_filmed import Filmed
 from icage.cells.regions import FingerRegion
 from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
 from sim.camera.stage import Decor, View

@@ -75,8 +75,8 @@ class Wanted:
     """Which grasps are looked for.
 
     ``aim`` is what is ranked; ``corners`` the least number of fingers in concave corners (three
-    straight edges are held to second order only); ``near`` = (phi_1, phi_2, within), [rad], keeps
-    to hands of about one shape, read from any finger.
+    straight edges are of second-order immobility only); ``near`` = (phi_1, phi_2, within), [rad],
+    keeps to hands of about one shape, read from any finger.
     """
 
     aim: Aim = "first"

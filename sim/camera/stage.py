@@ -99,7 +99,7 @@ class Decor:
 
 def dressed(scene: Scene, view: View, decor: Decor) -> MjSpec:
     """The scene's spec with camera, lights and everything to be seen."""
-    spec = scene.spec(looks=True)
+    spec = scene.spec(visuals=True)
     spec.modelname = "icage_stage"
     body = spec.body("object")
     for geom in list(body.geoms):

@@ -8,7 +8,7 @@ from icage.arrays import FloatArray
 from sim.chipmunk.world import SecondConfig, World
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcomes
-from sim.closing.step_check import DIVERGED, Watch
+from sim.closing.step_check import DIVERGED, StepCheck
 from sim.world.scene import Scene
 
 
@@ -26,19 +26,19 @@ def close_many_second(
     """
     rows = np.asarray(starts, dtype=np.float64).reshape(-1, 4)
     begin = scene.start_positions(rows)
-    watch = Watch.over(scene, begin)
+    check = StepCheck.over(scene, begin)
     states = np.zeros((len(rows), 12))
     states[:, :6] = approached(scene, begin)
     forces, contacts = np.zeros((len(rows), 3)), np.zeros(len(rows), dtype=np.int64)
     for i in range(len(rows)):
         only = np.array([i])
         if not np.isfinite(states[i]).all():
-            watch.diverged(only)
+            check.diverged(only)
             continue
         world = World(scene, states[i, :6], config or SecondConfig())
-        while not watch.ending[i]:
+        while not check.ending[i]:
             states[i] = world.step(scene.closing_force)
-            watch.observe(only, states[:, :6], states[:, 6:])
-        if watch.ending[i] != DIVERGED:
+            check.observe(only, states[:, :6], states[:, 6:])
+        if check.ending[i] != DIVERGED:
             forces[i], contacts[i] = world.press()
-    return ClosingOutcomes.seen(watch, rows, scene.placements(states[:, :6]), forces, contacts)
+    return ClosingOutcomes.seen(check, rows, scene.placements(states[:, :6]), forces, contacts)

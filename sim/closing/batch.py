@@ -15,7 +15,7 @@ from icage.arrays import FloatArray
 from sim.closing.approach import approached
 from sim.closing.one import outcomes
 from sim.closing.outcome import ClosingOutcomes
-from sim.closing.step_check import Watch
+from sim.closing.step_check import StepCheck
 from sim.world.engine import Batch, mj, no_log
 from sim.world.scene import Scene
 
@@ -49,26 +49,26 @@ def _close_batch(
     scene: Scene, starts: FloatArray, threads: int, progress: Progress | None
 ) -> ClosingOutcomes:
     qpos = scene.start_positions(starts)
-    watch = Watch.over(scene, qpos)
+    check = StepCheck.over(scene, qpos)
     if not len(starts):
-        return outcomes(scene, starts, watch, np.zeros((0, 7)))
+        return outcomes(scene, starts, check, np.zeros((0, 7)))
     batch = Batch(scene.model, nsim=len(starts), nthread=threads)
     batch.qpos = approached(scene, qpos)
     batch.ctrl = scene.closing_force
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")
-    running = watch.running
+    running = check.running
     for _ in range(scene.config.max_steps):
         try:
             batch.step(running.astype(np.int32))
         except mj.batch.SimulationError as error:
-            watch.diverged(error.ids)
-        watch.observe(running, positions, velocities)
+            check.diverged(error.ids)
+        check.observe(running, positions, velocities)
         warned = batch.warning[running, :, 1].any(axis=1)
         if warned.any():
-            watch.diverged(running[warned])
-        before, running = len(running), watch.running
+            check.diverged(running[warned])
+        before, running = len(running), check.running
         if progress is not None and len(running) < before:
             progress(before - len(running))
         if not len(running):
             break
-    return outcomes(scene, starts, watch, batch.state)
+    return outcomes(scene, starts, check, batch.state)

@@ -11,7 +11,7 @@ from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcome, ClosingOutcomes
-from sim.closing.step_check import DIVERGED, Watch
+from sim.closing.step_check import DIVERGED, StepCheck
 from sim.world.contact_forces import finger_forces
 from sim.world.engine import MjData, mj, no_log
 from sim.world.scene import Scene
@@ -21,18 +21,18 @@ def close(scene: Scene, start: Placement) -> ClosingOutcome:
     """Close from one placement until the hand is still, has shut, or time is up."""
     placements = start.as_array()[None, :]
     qpos = scene.start_positions(placements)
-    watch = Watch.over(scene, qpos)
+    check = StepCheck.over(scene, qpos)
     data = data_at(scene, approached(scene, qpos)[0])
     only = np.zeros(1, dtype=np.int64)
     with no_log():
         for _ in range(scene.config.max_steps):
             mj.mj_step(scene.model, data)
-            watch.observe(only, data.qpos[None, :], data.qvel[None, :])
+            check.observe(only, data.qpos[None, :], data.qvel[None, :])
             if data.warning.number.any():
-                watch.diverged(only)
-            if not len(watch.running):
+                check.diverged(only)
+            if not len(check.running):
                 break
-    return outcomes(scene, placements, watch, integration_state(scene, data)[None, :])[0]
+    return outcomes(scene, placements, check, integration_state(scene, data)[None, :])[0]
 
 
 def data_at(scene: Scene, qpos: FloatArray) -> MjData:
@@ -51,11 +51,13 @@ def integration_state(scene: Scene, data: MjData) -> FloatArray:
     return state
 
 
-def outcomes(scene: Scene, start: FloatArray, watch: Watch, states: FloatArray) -> ClosingOutcomes:
+def outcomes(
+    scene: Scene, start: FloatArray, check: StepCheck, states: FloatArray
+) -> ClosingOutcomes:
     """Read off the end of N closings from their integration states (N, nstate)."""
-    forces, contacts = _press(scene, watch.ending, states)
+    forces, contacts = _press(scene, check.ending, states)
     positions = np.array(states[:, 1:7])  # after the time
-    return ClosingOutcomes.seen(watch, start, scene.placements(positions), forces, contacts)
+    return ClosingOutcomes.seen(check, start, scene.placements(positions), forces, contacts)
 
 
 def _press(scene: Scene, ending: IntArray, states: FloatArray) -> tuple[FloatArray, IntArray]:

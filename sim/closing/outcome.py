@@ -8,7 +8,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
-from sim.closing.step_check import ENDINGS, Watch
+from sim.closing.step_check import ENDINGS, StepCheck
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class ClosingOutcomes:
 
     @classmethod
     def seen(
-        cls, watch: Watch, start: FloatArray, end: FloatArray, forces: FloatArray,
+        cls, check: StepCheck, start: FloatArray, end: FloatArray, forces: FloatArray,
         contacts: IntArray,
     ) -> ClosingOutcomes:  # fmt: skip
         """What was watched, with placements (N, 4) and what presses at the end, of any engine.
@@ -99,12 +99,12 @@ class ClosingOutcomes:
         return cls(
             start=np.array(start),
             end=np.column_stack([end[:, :3], np.maximum(end[:, 3], 0.0)]),
-            ending=watch.ending.copy(),
-            steps=watch.steps.copy(),
-            penetration_max=watch.penetration_max.copy(),
-            penetration_rest=watch.penetration_rest.copy(),
-            shape_error_max=watch.shape_error_max.copy(),
-            sigma_rise_max=watch.sigma_rise_max.copy(),
+            ending=check.ending.copy(),
+            steps=check.steps.copy(),
+            penetration_max=check.penetration_max.copy(),
+            penetration_rest=check.penetration_rest.copy(),
+            shape_error_max=check.shape_error_max.copy(),
+            sigma_rise_max=check.sigma_rise_max.copy(),
             finger_forces=forces,
             contacts=contacts,
         )

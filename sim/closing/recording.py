@@ -14,7 +14,7 @@ from icage.arrays import FloatArray, read_only
 from icage.errors import InputError
 from icage.hand import Placement
 from sim.closing.one import data_at
-from sim.closing.step_check import ENDINGS, Watch
+from sim.closing.step_check import ENDINGS, StepCheck
 from sim.world.contact_forces import finger_forces
 from sim.world.engine import mj, no_log
 from sim.world.scene import Scene
@@ -68,16 +68,16 @@ def record(
     every = max(1, math.ceil(frame_time / scene.config.time_step - _WHOLE))
     qpos = scene.start_positions(start.as_array())
     data = data_at(scene, qpos[0])
-    watch = Watch.over(scene, qpos)
+    check = StepCheck.over(scene, qpos)
     only = np.zeros(1, dtype=np.int64)
     frames: list[tuple[float, FloatArray, FloatArray]] = [(0.0, qpos[0], np.zeros(3))]
     with no_log():
         for step in range(1, scene.config.max_steps + 1):
             mj.mj_step(scene.model, data)
-            watch.observe(only, data.qpos[None, :], data.qvel[None, :])
+            check.observe(only, data.qpos[None, :], data.qvel[None, :])
             if data.warning.number.any():
-                watch.diverged(only)
-            ended = not len(watch.running)
+                check.diverged(only)
+            ended = not len(check.running)
             if ended or step % every == 0:
                 vectors, _ = finger_forces(scene.model, data)
                 forces = np.hypot(vectors[:, 0], vectors[:, 1]) / scene.config.drive_force
@@ -90,5 +90,5 @@ def record(
         qpos=read_only(positions),
         placements=read_only(scene.placements(positions)),
         finger_forces=read_only(np.array([frame[2] for frame in frames])),
-        ending=ENDINGS[int(watch.ending[0])],
+        ending=ENDINGS[int(check.ending[0])],
     )

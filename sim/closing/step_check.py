@@ -122,7 +122,7 @@ def _observe(
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class StepCheck:
     """The running record of N closings of one scene, a row each; updated in place.
 
     Attributes
@@ -144,7 +144,7 @@ class Watch:
     @classmethod
     def over(
         cls, scene: Scene, qpos: FloatArray, stride: int = 1, patience: FloatArray | None = None
-    ) -> Watch:
+    ) -> StepCheck:
         """Start watching closings that start from qpos (N, 6), every ``stride`` steps.
 
         ``patience`` (N,) multiplies the scene's time until a closing has timed out.

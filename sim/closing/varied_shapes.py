@@ -17,7 +17,7 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcomes
-from sim.closing.step_check import RUNNING, SETTLED, Watch
+from sim.closing.step_check import RUNNING, SETTLED, StepCheck
 from sim.closing.varied import Setting, Worlds, expand, own_model, settings
 from sim.world.engine import Batch, MjModel, mj, no_log
 from sim.world.scene import Scene
@@ -90,7 +90,7 @@ class _Part:
 
     scene: Scene
     rows: IntArray
-    watch: Watch
+    check: StepCheck
 
 
 def close_varied(
@@ -179,16 +179,16 @@ def _look(
     rest: _Rest, bad: IntArray,
 ) -> IntArray:  # fmt: skip
     """Observe the trials of one scene, at first..last of the batch; those still running."""
-    watch = part.watch
-    running = watch.running
+    check = part.check
+    running = check.running
     if not len(running):
         return running
-    watch.observe(running, positions[first:last], velocities[first:last])
-    still = rest.found[first:last] & (watch.ending == RUNNING) & (watch.touches >= 1)
-    watch.ending[still] = SETTLED
+    check.observe(running, positions[first:last], velocities[first:last])
+    still = rest.found[first:last] & (check.ending == RUNNING) & (check.touches >= 1)
+    check.ending[still] = SETTLED
     if len(bad):
-        watch.diverged(bad[(bad >= first) & (bad < last)] - first)
-    return watch.running + first
+        check.diverged(bad[(bad >= first) & (bad < last)] - first)
+    return check.running + first
 
 
 def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tuple[Any, list[_Part]]:
@@ -211,7 +211,7 @@ def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tupl
         else:
             models += [own_model(scene.model, changes, i) for i in range(len(rows))]
         patience = 1.0 / np.minimum(worlds.speed[rows], 1.0)
-        parts.append(_Part(scene, rows, Watch.over(scene, qpos, LOOK_EVERY, patience)))
+        parts.append(_Part(scene, rows, StepCheck.over(scene, qpos, LOOK_EVERY, patience)))
         first += len(rows)
     if models:
         batch.set_models(models)
@@ -232,7 +232,7 @@ def _read_off(
         force = part.scene.config.drive_force
         ends = part.scene.placements(np.array(positions[here]))
         forces, contacts = np.array(forces_now[here]) / force, np.array(touching[here], np.int64)
-        found.append(ClosingOutcomes.seen(part.watch, starts[part.rows], ends, forces, contacts))
+        found.append(ClosingOutcomes.seen(part.check, starts[part.rows], ends, forces, contacts))
         drive.append(np.full(len(part.rows), force))
         first += len(part.rows)
     return VariedOutcomes(ClosingOutcomes.joined(found), peak / np.concatenate(drive))

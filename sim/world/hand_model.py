@@ -103,11 +103,11 @@ class HandKinematics:
 
 
 def build_hand(
-    shape: HandShape, finger_radius: float, config: SimConfig, looks: bool = True
+    shape: HandShape, finger_radius: float, config: SimConfig, visuals: bool = True
 ) -> MjSpec:
     """A spec with the hand alone; ``finger_radius`` in object diameters.
 
-    ``looks`` adds what is only to be seen (rails, drawn fingers, cable); without it a step is a
+    ``visuals`` adds what is only to be seen (rails, drawn fingers, cable); without it a step is a
     third cheaper and the motion is the same, bit for bit.
 
     Raises
@@ -132,7 +132,7 @@ def build_hand(
     else:
         _add_linkage(spec, kinematics, config)
     _add_drive(spec, kinematics, config)
-    if looks:
+    if visuals:
         _draw_palm(palm, kinematics, finger_radius)
         _draw_fingers(spec, finger_radius)
         _draw_cable(spec, finger_radius)

@@ -22,7 +22,7 @@ _FREE = -1e3
 
 def held_model(scene: Scene) -> MjModel:
     """The scene compiled with a stop on the opening; the stop's place is ``tendon_range[0, 1]``."""
-    spec = scene.spec(looks=False)
+    spec = scene.spec(visuals=False)
     config = scene.config
     drive = spec.tendon("drive")
     drive.limited = 1

@@ -16,7 +16,7 @@ from sim.world.scene import Scene
 
 def rigid_model(scene: Scene, sigma: float) -> MjModel:
     """The scene compiled with finger k fixed at sigma L_k u_k; ``sigma`` in [diameter]."""
-    spec = scene.spec(looks=False)
+    spec = scene.spec(visuals=False)
     spec.modelname = "icage_rigid_hand"
     for parts in (spec.equalities, spec.actuators, spec.tendons):
         for part in list(parts):

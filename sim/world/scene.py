@@ -48,12 +48,12 @@ class Scene:
         normal = NormalObject(self.outline)
         object.__setattr__(self, "object", normal)
         object.__setattr__(self, "kinematics", HandKinematics(self.hand))
-        object.__setattr__(self, "model", self.spec(looks=False).compile())
+        object.__setattr__(self, "model", self.spec(visuals=False).compile())
 
-    def spec(self, looks: bool = True) -> MjSpec:
-        """A fresh spec of the whole scene; with looks, for whoever adds lights and cameras."""
+    def spec(self, visuals: bool = True) -> MjSpec:
+        """A fresh spec of the whole scene; with visuals, for whoever adds lights and cameras."""
         radius = self.finger_radius / self.outline.diameter
-        spec = build_hand(self.hand, radius, self.config, looks)
+        spec = build_hand(self.hand, radius, self.config, visuals)
         spec.modelname = "icage_scene"
         add_object(spec, self.object, self.config)
         if self.instrumented:

@@ -61,7 +61,7 @@ def l_shape() -> KnownGrasp:
 
 
 def triangle() -> KnownGrasp:
-    """Discs on the middles of three edges: held to second order only."""
+    """Discs on the middles of three edges: second-order immobility only."""
     outline = Outline([[np.cos(a), np.sin(a)] for a in np.deg2rad([90, 210, 330])])
     r = 0.03 * outline.diameter
     reach = 0.5 + r

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from experiments.study.inputs.distributions import LARGEST, Distribution
 from experiments.study.inputs.fields import HELP
-from experiments.study.inputs.fits import check_fits
+from experiments.study.inputs.fit_to_case import check_fits
 from experiments.study.inputs.read_variable import read_variable
 from experiments.study.inputs.variables import VARIABLES, input_of, is_placement
 from icage.case import Case

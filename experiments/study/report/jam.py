@@ -29,7 +29,7 @@ from experiments.figures.drawing.palette import (
 from experiments.figures.drawing.shapes import as_pair, as_path
 from experiments.study.inputs.variables import input_of
 from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
-from experiments.study.run.replayed import StudyRerun, filmed_scene, rerun_trial
+from experiments.study.run.one_trial_again import StudyRerun, filmed_scene, rerun_trial
 from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
 from icage.errors import InputError

@@ -17,7 +17,7 @@ import shapely
 from experiments.figures.drawing.shapes import tidied
 from experiments.figures.drawing.sheet import Bounds
 from experiments.io.arrow_table import Table
-from experiments.io.words import NOT_CLOSED
+from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.report.hexagons import Hexagons, bin_hexagons
 from experiments.study.report.map_layout import SCALE, Place, placed
 from experiments.study.report.map_panel import Cells, Panel, draw_panel, draw_scale_bar

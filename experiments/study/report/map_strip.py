@@ -14,7 +14,7 @@ from matplotlib.patches import Circle, Polygon
 
 from experiments.figures.drawing.caption import level_digits
 from experiments.figures.drawing.palette import FINGERS, INK, PAPER
-from experiments.io.words import NOT_CLOSED
+from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.report.map_panel import (
     colours,
     draw_crosses,

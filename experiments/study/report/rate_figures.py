@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from experiments.figures.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
-from experiments.io.words import NOT_CLOSED
+from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.indices_figure import draw_indices
 from experiments.study.report.map import draw_map

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from experiments.study.run.replayed import StudyRerun, outcome_words
+from experiments.study.run.one_trial_again import StudyRerun, outcome_words
 
 _POSE = ("x", "y", "theta", "sigma")
 

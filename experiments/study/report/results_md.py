@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
-from experiments.io.words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
+from experiments.io.outcome_words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.method import method
 from experiments.study.report.names import display, merged, percent

@@ -10,7 +10,7 @@ import numpy as np
 
 from experiments.io.arrow_table import Table
 from experiments.io.intervals import wilson
-from experiments.io.words import NOT_CLOSED
+from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.report.indices import sobol, split

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from experiments.io.words import VERDICT_WORDS
+from experiments.io.outcome_words import VERDICT_WORDS
 from experiments.study.report.names import number
 from experiments.study.run.shard import Study
 

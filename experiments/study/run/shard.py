@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from experiments.io.words import NOT_CLOSED
+from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
 from experiments.study.inputs.placements import Intended, collides, moved

@@ -14,9 +14,9 @@ import pyarrow as pa
 from experiments.io.arrow_table import Table
 from experiments.io.intervals import stopped_at
 from experiments.study.run.folder import StudyFolder, read_shards
+from experiments.study.run.missing_trials import missing
 from experiments.study.run.rows import table_of, target_trials
 from experiments.study.run.shard import Study, run_trials
-from experiments.study.run.spans import missing
 from sim.world.engine import no_log
 
 SHARD: Final = 500

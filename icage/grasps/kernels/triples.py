@@ -52,7 +52,7 @@ class Triples(NamedTuple):
 
 
 class TriplePoints(NamedTuple):
-    """Points (n, 2) of concurrency of a triple; ``turns`` (n,): 1 for contacts in its order, or -1."""
+    """Points (n, 2) of concurrency of a triple; ``turns`` (n,) of its contacts, 1 or -1."""
 
     points: np.ndarray
     turns: np.ndarray

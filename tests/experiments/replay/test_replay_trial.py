@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.replay import clips, video
-from experiments.replay.recorded import RecordingError, read_trial, rerun
+from experiments.replay.recorded_trial import RecordingError, read_trial, rerun
 from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case
 

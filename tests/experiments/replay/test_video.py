@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.hand_view import window_on
 from experiments.figures.drawing.plots import Level, Plot
-from experiments.io.words import END_WORDS
+from experiments.io.outcome_words import END_WORDS
 from experiments.replay import clips, film_page, video
 from experiments.replay.files import VIDEO, regions_by_grasp
 from experiments.replay.film_page import MAIN
-from experiments.replay.filmed import Filmed, filmed_alone, headline
 from experiments.replay.run import Replay, replay
 from experiments.replay.video import SIZE, film, film_alone
+from experiments.replay.what_is_filmed import Filmed, filmed_alone, headline
 from sim.camera.renderer import find_backend
 from sim.closing.judge import OUTCOMES
 from tests.experiments.commands.runner import here

@@ -10,7 +10,7 @@ import shapely
 from icage.arrays import FloatArray
 from icage.outline import Outline
 from sim.closing.approach import LEAD, approached, first_touch
-from sim.closing.step_check import RUNNING, Watch
+from sim.closing.step_check import RUNNING, StepCheck
 from sim.world.hand_in_object import depths
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle
@@ -130,18 +130,18 @@ def test_watch_counts_shape_depth_and_rise() -> None:
     grasp = t_shape()
     scene = grasp.scene()
     qpos = scene.start_positions(grasp.target.as_array())
-    watch = Watch.over(scene, qpos)
+    check = StepCheck.over(scene, qpos)
     moved = np.array(qpos)
     moved[0, 0] *= 1.01
-    watch.observe(np.array([0]), moved, np.ones((1, 6)))
+    check.observe(np.array([0]), moved, np.ones((1, 6)))
     sigma = float(scene.sigma(moved)[0])
     lengths = scene.kinematics.lengths
-    assert watch.shape_error_max[0] == pytest.approx(np.abs(moved[0, :3] - lengths * sigma).max())
-    assert watch.sigma_rise_max[0] == pytest.approx(sigma / scene.sigma(qpos)[0])
-    assert watch.ending[0] == RUNNING
+    assert check.shape_error_max[0] == pytest.approx(np.abs(moved[0, :3] - lengths * sigma).max())
+    assert check.sigma_rise_max[0] == pytest.approx(sigma / scene.sigma(qpos)[0])
+    assert check.ending[0] == RUNNING
     shut = moved.copy()
     shut[0, :3] = lengths * (0.9 * float(scene.sigma(qpos)[0]))
-    watch.observe(np.array([0]), shut, np.ones((1, 6)))
-    assert watch.penetration_max[0] > 0.01
-    watch.observe(np.array([0]), qpos, np.ones((1, 6)))
-    assert watch.penetration_rest[0] < 1e-12 < watch.penetration_max[0]
+    check.observe(np.array([0]), shut, np.ones((1, 6)))
+    assert check.penetration_max[0] > 0.01
+    check.observe(np.array([0]), qpos, np.ones((1, 6)))
+    assert check.penetration_rest[0] < 1e-12 < check.penetration_max[0]

@@ -95,7 +95,9 @@ def test_tendon_alone_is_a_differential_and_loses_the_shape() -> None:
 def test_a_compliant_linkage_yields_by_force_over_stiffness(
     shape: HandShape, compliance: float
 ) -> None:
-    model = build_hand(shape, 0.03, SimConfig(linkage_compliance=compliance), looks=False).compile()
+    model = build_hand(
+        shape, 0.03, SimConfig(linkage_compliance=compliance), visuals=False
+    ).compile()
     assert model.nu == 1
     assert model.neq == 0
     assert [model.tendon(k).name for k in range(model.ntendon)] == [

@@ -24,9 +24,9 @@ SIZES = {
 
 
 @pytest.mark.parametrize("grasp", GRASPS)
-@pytest.mark.parametrize("looks", [False, True])
-def test_every_element_is_named_and_nothing_warns(grasp: KnownGrasp, looks: bool) -> None:
-    model = grasp.scene().spec(looks).compile()
+@pytest.mark.parametrize("visuals", [False, True])
+def test_every_element_is_named_and_nothing_warns(grasp: KnownGrasp, visuals: bool) -> None:
+    model = grasp.scene().spec(visuals).compile()
     for size, kind in SIZES.items():
         for k in range(getattr(model, size)):
             object_type = getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.study.report.jam import draw_jam, presses
-from experiments.study.run.replayed import rerun_trial
+from experiments.study.run.one_trial_again import rerun_trial
 from icage.errors import InputError
 from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case

@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 
 from experiments.io.progress import stage_bar
 from experiments.io.versions import versions
-from experiments.replay.filmed import filmed_alone
-from experiments.replay.recorded import RecordingError
+from experiments.replay.recorded_trial import RecordingError
+from experiments.replay.what_is_filmed import filmed_alone
 from experiments.study.run.document import study_of
 from experiments.study.run.folder import SHARDS, TRIALS, read_document
 from experiments.study.run.rows import table_of

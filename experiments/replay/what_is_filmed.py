@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from experiments.io.words import END_WORDS, VERDICT_WORDS
+from experiments.io.outcome_words import END_WORDS, VERDICT_WORDS
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from sim.world.scene import Scene
