@@ -28,7 +28,10 @@ def test_the_python_of_the_readme_runs():
     (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     with contextlib.redirect_stdout(io.StringIO()) as out:
         exec(example, {})
-    assert out.getvalue().startswith("cage 0.")
+    cage, trials = out.getvalue().splitlines()
+    assert cage.startswith("<Cage pliers/1_best: sigma 50.4419 <")
+    assert cage.endswith(" target")
+    assert trials == "20"
 
 
 def test_every_command_shown_exists_and_every_command_is_shown():

@@ -110,7 +110,7 @@ def test_shipped_cases_are_planned_in_their_own_frame(path: Path) -> None:
     assert NearFrame.of(outline).outline_into(outline) is outline
 
 
-POINTS = ("contacts", "plateau")
+POINTS = ("vertices", "contacts", "plateau")
 """Keys of the plan whose numbers are positions in the object's frame, as pairs."""
 
 
