@@ -11,8 +11,9 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from icage.arrays import FloatArray
-from icage.errors import InputError, PlacementError
+from icage.arrays import FloatArray, read_only
+from icage.checks import a_number, a_path, one_of
+from icage.errors import PlacementError
 from icage.geometry.way_out import free_from
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
@@ -33,6 +34,14 @@ class CageStatus(StrEnum):
     """However far the hand opens, the object stays in it."""
 
 
+def _freeze(value: object, *names: str) -> None:
+    """Give a value read-only copies of its arrays, so that its hash cannot change."""
+    for name in names:
+        array = getattr(value, name)
+        if array is not None and array.flags.writeable:
+            object.__setattr__(value, name, read_only(array.copy()))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class GraspMinimum(Value):
     """A local minimum of sigma: closing can end here. Lengths in the object's unit.
@@ -50,6 +59,9 @@ class GraspMinimum(Value):
     joined_at: float
     """Level at which its basin joins the target's, [unit] (the target's own sigma for itself)."""
 
+    def __post_init__(self) -> None:
+        _freeze(self, "contacts")
+
     @property
     def placement(self) -> Placement:
         """The grasp as a placement of the hand in the object's frame."""
@@ -65,6 +77,9 @@ class Puncture(Value):
     joins: tuple[int, ...]
     contacts: FloatArray
     free_fingers: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        _freeze(self, "contacts")
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +151,9 @@ class Cage(Value):
     """Of the case that was planned; empty for a bare outline."""
     unit: str = ""
     """Of all lengths; empty if nobody said."""
+
+    def __post_init__(self) -> None:
+        _freeze(self, "contacts", "escape_path")
 
     @property
     def target_placement(self) -> Placement:
@@ -221,19 +239,16 @@ class Cage(Value):
         """
         from icage.cells.regions import caging_regions
 
-        if bound not in ("inner", "outer"):
-            raise InputError(f"bound is {bound!r}; 'inner' or 'outer' is needed")
+        one_of(bound, ("inner", "outer"), "bound")
+        a_number(gap, "gap")
         found = caging_regions(self, self._level(level), gap)
         return tuple(region.geometry for region in found if region.bound == bound)
 
     def _level(self, level: float | str) -> float | None:
         if isinstance(level, str):
-            if level not in ("sigma_max", "sigma_first"):
-                raise InputError(
-                    f"level is {level!r}; 'sigma_max', 'sigma_first' or a number is needed"
-                )
+            one_of(level, ("sigma_max", "sigma_first"), "level")
             return self.sigma_first if level == "sigma_first" else self.sigma_max
-        return level
+        return a_number(level, "level")
 
     def save(self, file: str | Path) -> None:
         """Write the cage as ``icage-plan/1``, whole or not at all; ``icage.read_cage`` reads it.
@@ -245,7 +260,7 @@ class Cage(Value):
         """
         from icage.formats.cage_json import save_cage
 
-        save_cage(self, Path(file))
+        save_cage(self, a_path(file, "file"))
 
     def _repr_svg_(self) -> str:
         from icage.formats.picture import cage_picture

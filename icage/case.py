@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only
+from icage.checks import a_count, an_instance, one_of
 from icage.contacts import as_contacts, check_contacts, check_radius
-from icage.errors import CaseError, GraspError, InputError
+from icage.errors import CaseError, GraspError
 from icage.grasp import Grasp
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -79,6 +80,7 @@ class Case(Value):
             raise CaseError(f"a case's name is {self.name!r}; it must be printable")
         if self.unit not in UNITS:
             raise CaseError(f"unit is {self.unit!r}; one of {', '.join(UNITS)} is needed")
+        an_instance(self.outline, Outline, "outline")
         object.__setattr__(self, "finger_radius", check_radius(self.finger_radius))
         if self.target is not None:
             contacts = as_contacts(self.target)
@@ -152,9 +154,11 @@ class Case(Value):
         from icage.grasps.of_case import best_of_case, grasps_in
         from icage.grasps.search import Wanted
 
-        if aim not in ("first", "cage"):
-            raise InputError(f"aim is {aim!r}; 'first' or 'cage' is needed")
+        one_of(aim, ("first", "cage"), "aim")
+        a_count(top, "top")
+        a_count(workers, "workers")
         draws = np.random.default_rng(0) if rng is None else rng
+        an_instance(draws, np.random.Generator, "rng")
         return grasps_in(best_of_case(self, top, Wanted(aim), draws, workers, progress), aim)
 
     def _repr_svg_(self) -> str:

@@ -33,7 +33,7 @@ def as_contacts(contacts: ArrayLike) -> FloatArray:
     """
     try:
         points = real_numbers(contacts)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise GraspError(
             f"contacts are a {type(contacts).__name__}; three finger centres [x, y] are needed"
         ) from error

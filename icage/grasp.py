@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from icage.arrays import FloatArray, read_only
+from icage.contacts import as_contacts
 from icage.hand import HandShape, Placement
 from icage.values import Value
 
@@ -33,7 +32,7 @@ class Grasp(Value):
     score: float
 
     def __post_init__(self) -> None:
-        contacts = np.array(self.contacts, dtype=np.float64)
+        contacts = as_contacts(self.contacts)
         object.__setattr__(self, "contacts", read_only(contacts))
 
     @property

@@ -11,10 +11,12 @@ import cmath
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise
+from numbers import Complex
 
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, read_only, real_numbers
+from icage.checks import a_number
 from icage.errors import HandError, PlacementError
 
 _FLATTEST = 1e-6
@@ -46,6 +48,8 @@ class HandShape:
     z: ComplexArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.z_3, Complex):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise HandError(f"z_3 is {self.z_3!r}; a complex number is needed")
         z_3 = complex(self.z_3)
         if not cmath.isfinite(z_3):
             raise HandError(f"the hand's third finger is {z_3}; finite coordinates are needed")
@@ -89,7 +93,13 @@ class HandShape:
 
         The paper asks for 0 < phi_1, phi_2 < pi; Eq. (1) also needs phi_3 = phi_2 - phi_1 > 0.
         """
+        a_number(phi_1, "phi_1", HandError)
+        a_number(phi_2, "phi_2", HandError)
         if not (0.0 < phi_1 < phi_2 < math.pi):
+            if max(phi_1, phi_2) > 2.0 * math.pi:
+                raise HandError(
+                    f"phi = ({phi_1:.6g}, {phi_2:.6g}) radians; from_angles_deg takes degrees"
+                )
             raise HandError(
                 f"phi = ({math.degrees(phi_1):.6g}, {math.degrees(phi_2):.6g}) degrees; "
                 "0 < phi_1 < phi_2 < 180 is needed (phi_2 is measured outside the triangle: an "
@@ -100,7 +110,8 @@ class HandShape:
     @classmethod
     def from_angles_deg(cls, phi_1: float, phi_2: float) -> HandShape:
         """``from_angles`` in degrees; the equilateral hand is (60, 120)."""
-        return cls.from_angles(math.radians(phi_1), math.radians(phi_2))
+        first, second = (a_number(phi, "phi", HandError) for phi in (phi_1, phi_2))
+        return cls.from_angles(math.radians(first), math.radians(second))
 
     @property
     def phi(self) -> tuple[float, float]:
@@ -162,8 +173,9 @@ class Placement:
     sigma: float
 
     def __post_init__(self) -> None:
-        if not all(math.isfinite(v) for v in (self.x, self.y, self.theta, self.sigma)):
-            raise PlacementError(f"placement {self.as_array().tolist()}: numbers must be finite")
+        for name in ("x", "y", "theta", "sigma"):
+            value = a_number(getattr(self, name), f"{name} of a placement", PlacementError)
+            object.__setattr__(self, name, value)
         if self.sigma < 0.0:
             raise PlacementError(f"placement with sigma = {self.sigma}; sigma >= 0 is needed")
 

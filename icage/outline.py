@@ -133,7 +133,7 @@ class Outline(Value):
 def _as_points(vertices: ArrayLike) -> FloatArray:
     try:
         points = real_numbers(vertices)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise OutlineError("outline vertices must be pairs of numbers [x, y]") from error
     if points.ndim != 2 or points.shape[1:] != (2,):
         raise OutlineError(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final, Literal, TypeAlias
+from pathlib import Path
+from typing import Final, Literal, TypeAlias, cast
 
 from numpy.typing import ArrayLike
 
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.method import CELLS
+from icage.checks import one_of
 from icage.contacts import as_contacts
 from icage.discs.brackets import plan_discs
 from icage.errors import InputError
@@ -101,6 +103,8 @@ def _asked(
         radius = case.finger_radius if finger_radius is None else finger_radius
         target = case.contacts if contacts is None else as_contacts(contacts)
         return replace(case, target=target, finger_radius=radius)
+    if isinstance(case, str | Path):
+        raise InputError(f"plan() was given {str(case)!r}; icage.load reads names and files")
     outline = case if isinstance(case, Outline) else Outline(case)
     radius = 0.0 if finger_radius is None else finger_radius
     target = None if contacts is None else as_contacts(contacts)
@@ -108,12 +112,13 @@ def _asked(
 
 
 def _method(method: MethodName | Method) -> Method:
-    if not isinstance(method, str):
-        return method
+    if hasattr(method, "cage") and hasattr(method, "local_cage"):
+        return cast(Method, method)
     if method == "cells":
         return CELLS
     if method == "contact-space":
         from icage.contact_space.method import CONTACT_SPACE  # only now: more kernels to load
 
         return CONTACT_SPACE
-    raise InputError(f"method is {method!r}; one of {', '.join(METHODS)} is needed")
+    one_of(method, METHODS, "method")
+    raise AssertionError("every name has its method above")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -9,8 +10,9 @@ from icage.agreement import difference
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.regions import caging_regions
+from icage.checks import a_path
 from icage.errors import CaseError
-from icage.formats.case_json import read_case
+from icage.formats.case_json import read_case, read_json
 from icage.formats.json_out import write_json
 from icage.formats.plan_json import plan_document
 from icage.planner import plan
@@ -26,7 +28,8 @@ the levels lie in brackets that later versions may narrow."""
 def save_cage(cage: Cage, file: Path) -> None:
     """Write the cage, its object and its regions (where its method draws them)."""
     regions = caging_regions(cage) if cage.work is not None else ()
-    write_json(plan_document(cage, regions, cage.name or UNNAMED, cage.unit or "m"), str(file))
+    document = plan_document(cage, regions, cage.name or UNNAMED, cage.unit or "m")
+    write_json({**document, "unnamed": not cage.name}, str(file))
 
 
 def read_cage(file: str | Path) -> Cage:
@@ -51,17 +54,15 @@ def read_cage(file: str | Path) -> Cage:
     ...     icage.read_cage(f"{folder}/cage.json").sigma_max == cage.sigma_max
     True
     """
-    path = Path(file)
+    path = a_path(file, "file")
     case = read_case(path)
     cage = plan(case)
-    _compare(path, cage, case)
-    return cage
-
-
-def _compare(path: Path, cage: Cage, case: Case) -> None:
-    from icage.formats.case_json import read_json
-
     document: Any = read_json(path)
+    _compare(path, document, cage, case)
+    return replace(cage, name="", unit="") if document.get("unnamed") is True else cage
+
+
+def _compare(path: Path, document: Any, cage: Cage, case: Case) -> None:
     allowed = CHANGED["discs" if case.finger_radius > 0.0 else "points"]
     for name in ("sigma_0", "sigma_first", "sigma_max"):
         if name not in document:

@@ -9,12 +9,14 @@ from typing import Final
 
 from numpy.typing import ArrayLike
 
+from icage.cage import Cage
 from icage.case import Case
+from icage.checks import a_count, a_number, one_of
 from icage.errors import CaseError, InputError
 from icage.formats.case_json import has_grasp, parse_unit, read_case, read_object
 from icage.formats.svg.outline import read_svg, stated_unit
 from icage.outline import Outline
-from icage.units import Unit
+from icage.units import UNITS, Unit
 from models import case_paths, grasp_cases, object_names, outline_path
 
 UNNAMED: Final = "object"
@@ -64,6 +66,16 @@ def load(
     >>> load([[0, 0], [4, 0], [0, 3]], unit="mm", finger_radius=0.1)
     <Case object: 3 vertices, 4 x 3 mm, finger radius 0.1 mm, no grasp yet>
     """
+    if width is not None:
+        a_number(width, "width")
+    if tolerance is not None:
+        a_number(tolerance, "tolerance")
+    if grasp is not None:
+        a_count(grasp, "grasp", 0)
+    if unit is not None:
+        one_of(unit, UNITS, "unit")
+    if isinstance(source, Case | Cage):
+        raise InputError(f"load() was given a {type(source).__name__}, which needs no loading")
     if not isinstance(source, str | os.PathLike):
         _refuse("bare vertices have their own size", width=width, tolerance=tolerance)
         _refuse("bare vertices have no grasps", grasp=grasp)

@@ -14,6 +14,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.case import Case
+from icage.checks import an_instance
 from icage.discs.true_curve import grasp_on_curve
 from icage.errors import GraspError, InputError
 from icage.geometry.contact_types import feet
@@ -63,6 +64,10 @@ def regrasp(
     >>> [round(icage.plan(regrasp(pliers, finger_radius=r)).sigma_0, 3) for r in (4.0, 6.0, 7.0)]
     [45.749, 50.442, 52.788]
     """
+    an_instance(case, Case, "case")
+    _ = case.contacts  # says that there is no grasp
+    if outline is not None:
+        an_instance(outline, Outline, "outline")
     if finger_radius is None and outline is None:
         raise InputError("regrasp needs a finger_radius or an outline to go to")
     wanted = replace(

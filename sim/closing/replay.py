@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from icage.cage import Cage
+from icage.checks import a_count, an_instance, one_of
 from icage.errors import InputError
 from icage.sampling import Starts, StartSet, draw_starts
 from sim.closing.batch import close_many
@@ -90,7 +91,8 @@ def replay(
     Raises
     ------
     InputError:
-        ``trials`` below 1, point fingers, or not a cage.
+        An argument is not of its kind (``trials`` below 1, ``seed`` below 0), point fingers, or not
+        a cage.
     SamplingError:
         The set is empty, or too small to be drawn from.
 
@@ -101,8 +103,13 @@ def replay(
     >>> replay(cage, trials=4, seed=0).counts["target"]
     4
     """
-    if trials < 1:
-        raise InputError(f"trials is {trials}; at least 1 is needed")
+    an_instance(cage, Cage, "cage", "; icage.plan makes one")
+    a_count(trials, "trials")
+    a_count(seed, "seed", 0)
+    a_count(threads, "threads", 0)
+    one_of(which, ("guaranteed", "rest", "cage"), "which")
+    if config is not None:
+        an_instance(config, SimConfig, "config")
     check_closable(cage, cage.name or "this cage")
     rng = np.random.default_rng([seed, 0, 1 if which == "rest" else 0])
     scene = Scene(cage.outline, cage.hand, cage.finger_radius, config or SimConfig())

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from icage.checks import a_number
 from icage.errors import InputError
 
 
@@ -93,12 +94,12 @@ class SimConfig:
 
     def __post_init__(self) -> None:
         for name in ("time_step", "drive_force", "finger_damping", "object_damping", "max_time"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
+            value = a_number(getattr(self, name), f"SimConfig.{name}")
+            if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
         for name in ("friction", "linkage_compliance"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
+            value = a_number(getattr(self, name), f"SimConfig.{name}")
+            if not value >= 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; >= 0 is needed")
 
     @property

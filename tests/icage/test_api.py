@@ -17,6 +17,7 @@ import icage
 from icage.contact_space.method import CONTACT_SPACE
 from icage.errors import CaseError, GraspError, HandError, MethodError, OutlineError, PlacementError
 from icage.formats.picture import cage_picture, case_picture, way_out_picture
+from sim import SimConfig, replay
 
 TRIANGLE = [[0, 0], [1, 0], [0.5, 0.75**0.5]]
 CONTACTS = [[0.5, 0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]]
@@ -82,7 +83,7 @@ def test_wrong_contacts_have_one_clear_error(name: str, method: str) -> None:
 @pytest.mark.parametrize(
     "vertices",
     [[], [[0, 0]], TRIANGLE[:2], [[0, 0], [1, 1], [0, 1], [1, 0]], [[NAN, 0], [1, 0], [0, 1]],
-     "triangle", [[0, 0, 0]] * 3, None, [[0, 0], [1, 0], [2, 0]]],
+     [[0, 0], [1, 0], [10**400, 1]], [[0, 0, 0]] * 3, None, [[0, 0], [1, 0], [2, 0]]],
 )  # fmt: skip
 def test_wrong_vertices_have_one_clear_error(vertices: object) -> None:
     with pytest.raises(OutlineError) as error:
@@ -103,6 +104,61 @@ def test_other_wrong_questions() -> None:
         icage.Case("a\x1b[2J", "mm", icage.Outline(TRIANGLE))
     with pytest.raises(AttributeError, match="it has"):
         _ = icage.cages  # pyright: ignore[reportAttributeAccessIssue]
+
+
+BIG = 10**400
+WRONG_CALLS = {
+    "plan a name": lambda c, g: icage.plan("triangle", CONTACTS),
+    "plan with a method None": lambda c, g: icage.plan(c, method=None),
+    "plan with a method 5": lambda c, g: icage.plan(c, method=5),
+    "plan far contacts": lambda c, g: icage.plan(TRIANGLE, [[0, 0], [1, 0], [0, BIG]]),
+    "regrasp nothing": lambda c, g: icage.regrasp(None, finger_radius=1.0),
+    "regrasp on a word": lambda c, g: icage.regrasp(c, outline="x"),
+    "regrasp to nowhere": lambda c, g: icage.regrasp(c),
+    "regrasp without a grasp": lambda c, g: icage.regrasp(
+        icage.Case("t", "mm", icage.Outline(TRIANGLE)), finger_radius=0.1
+    ),
+    "case of a word": lambda c, g: icage.Case("T", "mm", "x"),
+    "load a wrong grasp": lambda c, g: icage.load("pliers", grasp=1.5),
+    "load a wrong width": lambda c, g: icage.load("pliers", width="x"),
+    "load a huge width": lambda c, g: icage.load("drawing.svg", width=BIG),
+    "load a wrong unit": lambda c, g: icage.load(TRIANGLE, unit=b"mm"),
+    "load nothing": lambda c, g: icage.load("no such file"),
+    "load a case": lambda c, g: icage.load(c),
+    "grasps, half a one": lambda c, g: c.grasps(top=1.5),
+    "grasps, none": lambda c, g: c.grasps(top=0),
+    "grasps by a number": lambda c, g: c.grasps(rng=0),
+    "hand of a word": lambda c, g: icage.HandShape("x"),
+    "hand of degrees": lambda c, g: icage.HandShape.from_angles(60, 120),
+    "hand of words": lambda c, g: icage.HandShape.from_angles_deg("60", "120"),
+    "placement of a word": lambda c, g: icage.Placement("x", 0, 0, 1),
+    "grasp of a word": lambda c, g: icage.Grasp("a", 1, 2, 3, 4),
+    "regions of bytes": lambda c, g: g.regions(b"x"),
+    "regions of a wide gap": lambda c, g: g.regions(gap=2.0),
+    "save to nothing": lambda c, g: g.save(None),
+    "save to a zero byte": lambda c, g: g.save("\0"),
+    "read nothing": lambda c, g: icage.read_cage(None),
+    "replay nothing": lambda c, g: replay(None),
+    "replay for ever": lambda c, g: replay(g, trials=INF),
+    "replay half a trial": lambda c, g: replay(g, trials=1.5),
+    "replay none": lambda c, g: replay(g, trials=0),
+    "replay from a word": lambda c, g: replay(g, seed="x"),
+    "replay from below": lambda c, g: replay(g, seed=-1),
+    "replay on a word": lambda c, g: replay(g, threads="x"),
+    "replay on fewer than none": lambda c, g: replay(g, threads=-3),
+    "replay another set": lambda c, g: replay(g, which="zz"),
+    "replay as a word": lambda c, g: replay(g, config="x"),
+    "replay points": lambda c, g: replay(icage.plan(TRIANGLE, CONTACTS)),
+    "a world of words": lambda c, g: SimConfig(time_step="x"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_CALLS)
+def test_every_wrong_call_has_one_clear_error(name: str, case: icage.Case) -> None:
+    with pytest.raises(icage.InputError) as error:
+        WRONG_CALLS[name](case, icage.plan(case))
+    assert str(error.value)
+    assert "\n" not in str(error.value)
 
 
 def test_a_clockwise_outline_and_lists_are_fine(cage: icage.Cage) -> None:
@@ -137,9 +193,12 @@ def test_equality_and_hashes_answer(cage: icage.Cage, case: icage.Case) -> None:
 
 
 def test_arrays_are_read_only(cage: icage.Cage, case: icage.Case) -> None:
-    for array in (cage.outline.vertices, case.contacts):
+    arrays = [cage.outline.vertices, case.contacts, cage.contacts, cage.escape_path]
+    arrays += [cage.grasps[0].contacts, cage.punctures[0].contacts, cage.hand.z]
+    for array in arrays:
+        assert array is not None
         with pytest.raises(ValueError, match="read-only"):
-            array[0, 0] = 7.0
+            array[...] = 7.0
 
 
 def test_reprs_are_short(cage: icage.Cage, case: icage.Case) -> None:
@@ -218,6 +277,9 @@ def test_a_saved_cage_is_the_same_and_an_edited_one_is_refused(
     file.write_text(json.dumps(document))
     with pytest.raises(CaseError, match="sigma_max"):
         icage.read_cage(file)
+    bare = icage.plan(TRIANGLE, CONTACTS)
+    bare.save(file)
+    assert (icage.read_cage(file).name, icage.read_cage(file).unit) == ("", "")
 
 
 def test_every_public_name_is_documented() -> None:

@@ -251,7 +251,9 @@ def test_what_is_no_array_of_numbers_is_refused(contacts: object) -> None:
     [(0, 90), (90, 90), (90, 80), (90, 180), (-30, 60), (math.nan, 90), (30, math.inf)],
 )
 def test_refused_angles(phi: tuple[float, float]) -> None:
-    with pytest.raises(HandError, match=r"phi = .* 0 < phi_1 < phi_2 < 180 is needed"):
+    with pytest.raises(
+        HandError, match=r"0 < phi_1 < phi_2 < 180 is needed|finite number is needed"
+    ):
         HandShape.from_angles_deg(*phi)
 
 
@@ -300,10 +302,10 @@ def test_theta_is_the_direction_from_finger_1_to_2() -> None:
     ("row", "message"),
     [
         ((0.0, 0.0, 0.0, -1e-300), r"sigma = -1e-300; sigma >= 0 is needed"),
-        ((math.nan, 0.0, 0.0, 1.0), r"placement \[nan, 0.0, 0.0, 1.0\]: numbers must be finite"),
-        ((0.0, math.inf, 0.0, 1.0), "must be finite"),
-        ((0.0, 0.0, math.nan, 1.0), "must be finite"),
-        ((0.0, 0.0, 0.0, math.inf), "must be finite"),
+        ((math.nan, 0.0, 0.0, 1.0), "x of a placement is nan"),
+        ((0.0, math.inf, 0.0, 1.0), "a finite number is needed"),
+        ((0.0, 0.0, math.nan, 1.0), "a finite number is needed"),
+        ((0.0, 0.0, 0.0, math.inf), "a finite number is needed"),
     ],
 )
 def test_refused_placements(row: tuple[float, float, float, float], message: str) -> None:
