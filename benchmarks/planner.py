@@ -21,7 +21,8 @@ from icage.cells.free_space import search
 from icage.cells.membership import query
 from icage.cells.regions import caging_regions
 from icage.cells.target import contacts_as_configuration, find_target
-from icage.grasps.search import GraspEvaluator, Wanted
+from icage.grasps.evaluator import GraspEvaluator
+from icage.grasps.wanted import Wanted
 from icage.outline import Outline
 from icage.planner import plan
 

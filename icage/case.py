@@ -152,7 +152,7 @@ class Case(Value):
         True
         """
         from icage.grasps.of_case import best_of_case, grasps_in
-        from icage.grasps.search import Wanted
+        from icage.grasps.wanted import Wanted
 
         one_of(aim, ("first", "cage"), "aim")
         a_count(top, "top")

@@ -19,7 +19,7 @@ from icage.errors import InputError
 from icage.formats.case_json import grasp_name
 from icage.grasps.of_case import best_of_case
 from icage.grasps.planned import score
-from icage.grasps.search import Wanted
+from icage.grasps.wanted import Wanted
 
 SEARCHED: Final = 10
 """Grasps that are planned before the best is taken: as many as ``icage grasps`` lists."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from icage.cage import Cage
     from icage.case import Case
     from icage.grasps.planned import PlannedGrasps
-    from icage.grasps.search import Aim
+    from icage.grasps.wanted import Aim
 
 PHI_SKETCH = """\
 the hand's angles, P1 = phi_1 and P2 = phi_2, in degrees:
@@ -197,7 +197,7 @@ def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
     from experiments.cases.chosen import WORKERS
     from experiments.io.progress import stage_bar
     from icage.grasps.of_case import best_of_case
-    from icage.grasps.search import Wanted
+    from icage.grasps.wanted import Wanted
     from icage.hand import HandShape
 
     near = None

@@ -10,7 +10,9 @@ from icage.case import Case
 from icage.errors import InputError
 from icage.grasp import Grasp
 from icage.grasps.planned import PlannedGrasps, planned_grasps, score
-from icage.grasps.search import Aim, Progress, Wanted, ranked_grasps
+from icage.grasps.search import ranked_grasps
+from icage.grasps.wanted import Aim, Wanted
+from icage.grasps.workers import Progress
 
 
 def best_of_case(

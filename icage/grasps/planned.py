@@ -14,7 +14,8 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.discs.true_curve import grasp_on_curve
 from icage.errors import GeometryError, GraspError, HandError
-from icage.grasps.search import Aim, same_place
+from icage.grasps.search import same_place
+from icage.grasps.wanted import Aim
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan

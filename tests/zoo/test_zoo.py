@@ -32,9 +32,11 @@ from icage.formats.plan_json import plan_document, plan_summary
 from icage.formats.query_json import query_document
 from icage.geometry.exterior import exterior_pieces, without_straight_vertices
 from icage.geometry.statics import balance, contact_normals, free_fingers
+from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
 from icage.grasps.of_one_hand import grasps_of_hand
-from icage.grasps.search import Candidate, GraspEvaluator, Wanted, best_grasps
+from icage.grasps.search import best_grasps
+from icage.grasps.wanted import Candidate, Wanted
 from icage.hand import HandShape
 from icage.method import Method
 from icage.outline import Outline

@@ -17,7 +17,8 @@ from icage.discs.true_curve import refine
 from icage.errors import GraspError, InputError
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
 from icage.grasps.of_one_hand import grasps_of_hand
-from icage.grasps.search import Aim, Candidate, Wanted, best_grasps
+from icage.grasps.search import best_grasps
+from icage.grasps.wanted import Aim, Candidate, Wanted
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
