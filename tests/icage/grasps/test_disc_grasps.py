@@ -105,8 +105,8 @@ def test_a_collapsed_refinement_is_none() -> None:
         else:
             with pytest.raises(GraspError, match="no minimum"):
                 grasp_on_curve(outline, 4.0, contacts, hand)
-    assert outcomes[False] >= 11
-    assert outcomes[True] >= 25
+    assert outcomes[False] >= 1  # 11 once collapsed; whoever is solved now has passed the checks
+    assert outcomes[True] >= 34
 
 
 @pytest.mark.slow

@@ -208,7 +208,7 @@ def test_implicitfast_agrees_with_the_new_integrator() -> None:
     """``discrete`` is under development upstream: an old integrator must find the same grasp."""
     grasp = l_shape()
     scene = grasp.scene()
-    spec = scene.spec(looks=False)
+    spec = scene.spec(visuals=False)
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.timestep = 2e-4
     for joint in spec.joints:

@@ -70,7 +70,7 @@ def test_a_yielding_finger_bears_its_contact_by_its_spring():
 def test_masses_times_f_are_forces_and_dampings_over_f(factor: float):
     known = l_shape()
     usual, heavy = known.scene(), known.scene(Change(inertia=factor).config(SimConfig()))
-    spec = usual.spec(looks=False)
+    spec = usual.spec(visuals=False)
     thing = spec.body("object")
     thing.mass, thing.inertia = thing.mass * factor, thing.inertia * factor
     for k in (1, 2, 3):
