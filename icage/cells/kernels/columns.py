@@ -44,3 +44,7 @@ MERGE_KEEP, MERGE_LOSE, MERGE_EDGE, MERGE_SIDE = range(4)
 
 LOW_LEVEL, LOW_DEPTH = range(2)
 """lows (m, 2): level of a merge, and its height above the birth of the swallowed minimum."""
+
+NEAR_DX, NEAR_DY, NEAR_WX, NEAR_WY, NEAR_SIGMA, NEAR_MOVED, NEAR_TURNED = range(7)
+"""near (n, 7): a least point of a cell near the contacts: d, w, sigma; how far it is from them
+[diameter] and turned [rad]."""
