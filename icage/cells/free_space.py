@@ -183,7 +183,7 @@ def search(
     """Visit the cells around the target's in ascending order of the pass to them."""
     found = explore(
         free_space.pieces, free_space.z, np.asarray(cell, dtype=np.int64), sigma_0,
-        free_space.cap, free_space.worst, stop_above, limit,
+        free_space.cap, free_space.worst, stop_above, limit, np.inf,
     )  # fmt: skip
     return Search(
         free_space=free_space,

@@ -45,13 +45,15 @@ def kernel_digest() -> str:
 def compiled(function: Function) -> Function:
     """Compile without fast-math (results must not depend on it) and cache on disk.
 
+    Kernels touch no Python object, so they release its lock and threads share the cores.
+
     Where numba may write a cache neither beside the file nor into the user's own folder, every
     process compiles for itself.
     """
     try:
-        dispatcher: Any = numba.njit(cache=True, fastmath=False)(function)
+        dispatcher: Any = numba.njit(cache=True, fastmath=False, nogil=True)(function)
     except RuntimeError:
-        dispatcher = numba.njit(fastmath=False)(function)
+        dispatcher = numba.njit(fastmath=False, nogil=True)(function)
         _dispatchers.append(dispatcher)
         return dispatcher
     if not hasattr(dispatcher, "_cache"):  # NUMBA_DISABLE_JIT=1: the plain function

@@ -11,6 +11,8 @@ class Ending(IntEnum):
     GAVE_UP = -1
     CLOSED_IN = 0
     ESCAPED = 1
+    MET = 2
+    """Another basin was met that is as deep as was asked; the search went no further."""
 
 
 class StartSide(IntEnum):

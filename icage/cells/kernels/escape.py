@@ -85,7 +85,7 @@ def escape_levels(pieces, z, cells, sigma, cap, worst, limit, memory):
             if not np.isnan(known[at, EXACT]):
                 levels[k] = known[at, EXACT]
                 continue
-        found = explore(pieces, z, cells[k], 0.0, cap, worst, np.inf, limit)
+        found = explore(pieces, z, cells[k], 0.0, cap, worst, np.inf, limit, np.inf)
         level = found.level
         if found.outcome == GAVE_UP:
             levels[k] = np.nan

@@ -41,7 +41,7 @@ from icage.kernels.storage import (
     rehashed,
 )
 
-GAVE_UP, CLOSED_IN, ESCAPED = Ending
+GAVE_UP, CLOSED_IN, ESCAPED, MET = Ending
 
 SIGHT = 1e-11
 """[diameter] What two fingers see of each other is decided with this much to spare."""
@@ -129,12 +129,12 @@ def birth(pieces, z, cell, cap, worst, room):
 
 
 @compiled
-def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
+def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough):
     """Search from the cell ``start`` (3,), born at ``floor``, until the hand escapes.
 
     It has escaped when all fingers are in one piece, or when it can shrink to a point at once.
     ``stop_above`` ends the search when every open pass is above that level, ``node_limit`` when
-    so many cells were entered.
+    so many cells were entered, ``enough`` when a basin is known to be deeper than that.
     """
     m = len(pieces.ptr) - 1
     room = new_room()
@@ -268,6 +268,11 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] < DEEP * pieces.scale:
                 behind = birth(pieces, z, cell, level, worst, room).sigma
                 records[last, RECORD_BIRTH] = min(behind, records[last, RECORD_BIRTH])
+        if n_records > 0:
+            last = n_records - 1
+            if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] > enough:
+                outcome = MET
+                break
     # passes left open may still lead between two visited cells
     for e in range(n_edges):
         if edges[e, EDGE_TO] == -1:
