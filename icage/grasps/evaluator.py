@@ -1,175 +1,229 @@
-"""One outline, cut into pieces once: how good is the grasp on these contacts? Our own."""
+"""One outline, cut into pieces once: how good are the grasps on these contacts? Our own."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from typing import TypeAlias
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.cells.free_space import FreeSpace, search
-from icage.cells.largest_sigma import largest_sigma_in
-from icage.cells.target import contacts_as_configuration, find_target
 from icage.discs.offsets import offsets
-from icage.errors import HandError
-from icage.geometry.exterior import Pieces, exterior_pieces, shortest_side
+from icage.geometry.exterior import Pieces, exterior_pieces
 from icage.grasps.features import (
-    EDGE,
     VERTEX,
     Features,
     balanced_triples,
     features_of,
     further_points,
+    neighbours,
 )
-from icage.grasps.wanted import Candidate, Wanted
+from icage.grasps.findings import Findings
+from icage.grasps.kernels.climb import climb, tried_jobs
+from icage.grasps.kernels.evaluate import Sought, Verdict, evaluate
+from icage.grasps.kernels.hands import HandLimits as Limits
+from icage.grasps.kernels.shaping import shaped_points
+from icage.grasps.wanted import LEAST_GAP, Candidate, Wanted
 from icage.hand import HandShape
-from icage.kernels.locate import depth_inside
 from icage.outline import Outline
-from icage.tolerance import FREE_FINGER, NOT_A_CAGE
 
-_SEGMENTS = 16
+SEGMENTS = 16
+"""Segments of an arc per quadrant where levels are compared."""
 
-_WIDEST = 8.0
+WIDEST = 8.0
 """Longest over shortest side of the hands that are searched; beyond it they are poor hands."""
-
-_FLATTEST = 0.05
-"""Least height over longest side of the hands that are searched: the same."""
 
 _SEARCH_LIMIT = 20_000
 """Cells after which the search from a candidate is broken off; how many were is told."""
 
-_MOST_TRIPLES = 20_000
-"""Triples that are tried, a random choice if there are more; how many are left out is told."""
+_OF_TOLERANCE = 10.0
+"""[tolerance] How far apart two fingers must be at least: nearer, their hand is all error."""
+
+_LEAST = 1e-3
+"""[diameter] ... and this far in any case."""
 
 _FURTHER = 12
-"""Points of concurrency at which a triple is tried before it is given up."""
-
-
-Job: TypeAlias = tuple[IntArray, FloatArray]
-Found: TypeAlias = tuple[Candidate | None, FloatArray]
+"""Points of concurrency at which a triple is tried where it is looked at more closely."""
 
 
 class GraspEvaluator:
-    """One outline, cut into pieces once for all hands that are tried on it."""
+    """One outline, cut into pieces once for all hands that are tried on it.
 
-    def __init__(self, outline: Outline, radius: float, wanted: Wanted) -> None:
+    Parameters
+    ----------
+    radius:
+        [unit] Of the fingers. Discs stand on the inner offset polygon with ``segments`` a quadrant.
+    """
+
+    def __init__(
+        self, outline: Outline, radius: float, wanted: Wanted, segments: int = SEGMENTS
+    ) -> None:
         self.radius = radius
         self.wanted = wanted
         self.broken_off = 0
-        self.triples = self.triples_left_out = 0
-        self.outline = offsets(outline, radius, _SEGMENTS).inner if radius > 0.0 else outline
-        chord = 2.1 * radius * np.sin(0.25 * np.pi / _SEGMENTS)
-        self.features: Features = features_of(self.outline, longer_than=float(chord))
-        self.apart = max(2.02 * radius, 1e-3 * outline.diameter)
+        grown = offsets(outline, radius, segments) if radius > 0.0 else None
+        self.outline = outline if grown is None else grown.inner
+        arc = None if grown is None else (outline.vertices, radius, grown.sagitta)
+        self.features: Features = features_of(self.outline, arc=arc)
+        self._beside = neighbours(self.features)
+        self.limits = _limits(outline, radius, wanted)
         self._pieces: Pieces
-        widest = HandShape(complex(0.5, (_WIDEST**2 - 0.25) ** 0.5))
+        widest = HandShape(complex(0.5, (WIDEST**2 - 0.25) ** 0.5))
         self._pieces, self._origin = exterior_pieces(self.outline, widest)
+        self._ring = np.ascontiguousarray(self.outline.vertices - self._origin)
+        boxes = np.array(wanted.avoid, dtype=np.float64).reshape(-1, 4)
+        self._sought = Sought(wanted.aim == "first", boxes, radius, _SEARCH_LIMIT)
 
     def evaluate(
         self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)
     ) -> Candidate | None:
-        """The grasp next to these contacts and its levels, None if no cage (or a poor hand)."""
-        try:
-            hand = HandShape.from_contacts(contacts)
-        except HandError:
-            return None
-        if not self.wanted.allows(hand):
-            return None
-        sides = [1.0, abs(hand.z_3), abs(hand.z_3 - 1.0)]
-        longest = max(sides)
-        if longest > _WIDEST * min(sides) or hand.z_3.imag < _FLATTEST * longest**2:
-            return None
-        if float(np.hypot(*(contacts[1] - contacts[0]))) * shortest_side(hand) < self.apart:
-            return None
-        free_space = FreeSpace.of_pieces(self.outline, hand, self._pieces, self._origin)
-        target = find_target(free_space, contacts_as_configuration(free_space, contacts))
-        if target is None or target.plateau is not None:
-            return None
-        own = free_space.contacts(target.at)
-        if self._leaves_a_finger_free(own):
-            return None
-        found = search(free_space, target.cell, target.sigma_0, limit=_SEARCH_LIMIT)
-        if found.gave_up:
-            self.broken_off += 1
-            return None
-        top = largest_sigma_in(found) if found.never_escapes else found.level
-        first = min(found.sigma_first(), top)
-        if top / target.sigma_0 - 1.0 < NOT_A_CAGE:
-            return None
-        score = (first if self.wanted.aim == "first" else top) / target.sigma_0
-        a, b, c = triple
-        return Candidate(own, (a, b, c), target.sigma_0, first, top, score)
+        """The grasp next to these contacts (3, 2), None if it is no cage of a hand that is wanted.
 
-    def _leaves_a_finger_free(self, contacts: FloatArray) -> bool:
-        """Where two fingers already hold: the best grasps of three lie beside such ones."""
-        middle = contacts.mean(axis=0)
-        depth = depth_inside(self.outline.vertices - middle, contacts - middle, 0.0)
-        return float(depth.min()) < -FREE_FINGER * self.outline.diameter
+        Contacts are counterclockwise.
+        """
+        x, y = np.ascontiguousarray(contacts[:, 0]), np.ascontiguousarray(contacts[:, 1])
+        x, y = x.copy(), y.copy()
+        verdict, first, sigma_0, level = evaluate(
+            self._pieces, self._origin, self._ring, x, y, self.limits, self._sought
+        )
+        found = self._kept(
+            np.array([verdict], np.int64), np.array([list(triple)], np.int64), np.zeros((1, 2)),
+            np.column_stack([x, y])[None], np.array([[sigma_0, level]]), np.array([first]),
+        )  # fmt: skip
+        return found.candidates()[0] if len(found) else None
 
     def at(self, triple: IntArray, p: FloatArray) -> Candidate | None:
         """The grasp of three features whose lines of force meet at P."""
-        if not self.features.allows(triple, p):
-            return None
-        return self.evaluate(self.features.contacts(triple, p), (int(k) for k in triple))
+        found = self.grasps(np.asarray(triple)[None], np.asarray(p)[None])
+        return found.candidates()[0] if len(found) else None
 
-    def elsewhere(self, triple: IntArray) -> list[Found]:
-        """The grasps of a triple at a few points of concurrency all over its set."""
-        fair = (_WIDEST, _FLATTEST)
-        jobs = further_points(self.features, self.outline, self.apart, triple, fair)
-        few = np.linspace(0, len(jobs) - 1, min(_FURTHER, len(jobs))).round().astype(int)
-        return [(self.at(*jobs[k]), jobs[k][1]) for k in few]
+    def grasps(self, triples: IntArray, points: FloatArray) -> Findings:
+        """Those of some triples (n, 3) with their points of concurrency (n, 2) that are cages."""
+        return self.rows_of(triples, points)[1]
 
-    def jobs(self, rng: np.random.Generator) -> list[Job]:
-        """A triple of features and a point of concurrency each: where the search starts.
+    def rows_of(self, triples: IntArray, points: FloatArray) -> tuple[IntArray, Findings]:
+        """The same, and the rows that they came from."""
+        found, used = tried_jobs(
+            self._pieces, self._origin, self._ring, self.features, self._beside, triples, points,
+            self.limits, self._sought,
+        )  # fmt: skip
+        self.broken_off += int((found.verdict == Verdict.BROKEN_OFF).sum())
+        return self._kept_rows(
+            found.verdict, used, points, found.contacts, found.levels, found.first
+        )
 
-        All triples that can balance, or a random choice of ``_MOST_TRIPLES`` of them.
+    def climbed(self, triple: IntArray, start: FloatArray, stride: float, steps: int) -> Findings:
+        """The best of so many candidates on the way up from a point (2,), in one row or none.
+
+        ``stride`` [unit] is the size of the first simplex.
         """
-        triples, points = balanced_triples(self.features, self.outline, self.apart)
+        found, used, point, _ = climb(
+            self._pieces, self._origin, self._ring, self.features, self._beside, self.limits,
+            self._sought, triple, start, stride, steps,
+        )  # fmt: skip
+        return self._kept_rows(
+            found.verdict, used, point, found.contacts, found.levels, found.first
+        )[1]
+
+    def _kept(
+        self, verdict: IntArray, triples: IntArray, points: FloatArray, contacts: FloatArray,
+        levels: FloatArray, first: IntArray,
+    ) -> Findings:  # fmt: skip
+        return self._kept_rows(verdict, triples, points, contacts, levels, first)[1]
+
+    def _kept_rows(
+        self, verdict: IntArray, triples: IntArray, points: FloatArray, contacts: FloatArray,
+        levels: FloatArray, first: IntArray,
+    ) -> tuple[IntArray, Findings]:  # fmt: skip
+        """Cages of hands that are wanted, read from their finger 1."""
+        rows = np.flatnonzero(verdict == Verdict.CAGE)
+        turn = (first[rows, None] + np.arange(3)) % 3
+        own = np.take_along_axis(contacts[rows], turn[:, :, None], axis=1)
+        before = contacts[rows]
+        longer = _side(own) / np.maximum(_side(before), 1e-300)
+        found = Findings(
+            np.take_along_axis(triples[rows], turn, axis=1), points[rows], own,
+            levels[rows, 0] * longer, levels[rows, 1] * longer,
+        )  # fmt: skip
+        deep = found.level - found.sigma_0 >= self.wanted.tolerance
+        return rows[deep], found.of(np.flatnonzero(deep))
+
+    def triples(self, part: int = 0, parts: int = 1) -> tuple[IntArray, FloatArray]:
+        """All triples (n, 3) that can balance, and a point of concurrency (n, 2) for each.
+
+        Of ``parts`` shares that are all of them together.
+        """
+        any_shape = self.limits._replace(within=math.inf)
+        triples, points = balanced_triples(self.features, self.outline, any_shape, part, parts)
         corners = (self.features.kind[triples] == VERTEX).sum(axis=1)
-        use = np.flatnonzero(corners >= self.wanted.corners)
-        self.triples = len(use)
-        self.triples_left_out = max(0, len(use) - _MOST_TRIPLES)
-        if self.triples_left_out:
-            use = np.sort(rng.choice(use, _MOST_TRIPLES, replace=False))
-        jobs: list[Job] = list(zip(triples[use], points[use], strict=True))
+        use = corners >= self.wanted.corners
+        return triples[use], points[use]
+
+    def further(self, triple: IntArray, most: int = _FURTHER) -> tuple[IntArray, FloatArray]:
+        """A triple at a few points of concurrency all over its set."""
+        any_shape = self.limits._replace(within=math.inf)
+        triples, points = further_points(self.features, self.outline, any_shape, triple)
+        few = np.linspace(0, len(points) - 1, min(most, len(points))).round().astype(int)
+        return triples[few], points[few]
+
+    def shaped(self, triples: IntArray, points: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Where a shape of hand is wanted: the points moved to where the hands have it."""
         if self.wanted.near is None:
-            return jobs
-        solved = [(triple, self._shaped(triple, p)) for triple, p in jobs]
-        return [(triple, p) for triple, p in solved if p is not None]
+            return triples, points
+        phi_1, phi_2, within = self.wanted.near
+        moved, off = shaped_points(
+            self.features, triples, points, phi_1, phi_2, self.outline.diameter
+        )
+        use = off <= within
+        return triples[use], moved[use]
 
-    def _shaped(self, triple: IntArray, p: FloatArray) -> FloatArray | None:
-        """A point of concurrency near P that gives the wanted shape of hand (Gauss-Newton)."""
-        step = 1e-6 * self.outline.diameter
+    def on_features(self, found: Findings) -> tuple[IntArray, FloatArray]:
+        """Triples and points of grasps that were found on another polygon of the same object.
 
-        def error(q: FloatArray) -> FloatArray | None:
-            try:
-                hand = HandShape.from_contacts(self.features.contacts(triple, q))
-            except HandError:
-                return None
-            return self.wanted.shape_error(hand)
-
-        for _ in range(12):
-            here = error(p)
-            if here is None:
-                return None
-            if np.abs(here).max() < 1e-9:
-                break
-            ahead = [error(p + step * np.eye(2)[k]) for k in range(2)]
-            if ahead[0] is None or ahead[1] is None:
-                return None
-            slope = np.column_stack([ahead[0] - here, ahead[1] - here]) / step
-            move = np.linalg.lstsq(slope, -here, rcond=1e-6)[0]
-            longest = 0.1 * self.outline.diameter
-            p = p + move * min(1.0, longest / max(float(np.hypot(*move)), 1e-300))
-        return p if self.features.allows(triple, p) else None
-
-    def movable(self, triple: IntArray) -> bool:
-        """Whether any contact of the triple can move (is on an edge)."""
-        return bool((self.features.kind[triple] == EDGE).any())
+        Each contact goes to the nearest feature that its line of force can pass.
+        """
+        near = 0.1 * self.radius + 1e-9 * self.outline.diameter
+        slack = 1e-3 * self.outline.diameter
+        features = self.features
+        points = found.points
+        inside = np.ones((len(points), len(features.kind)), dtype=bool)
+        for side in range(2):
+            plane = features.planes[:, side]
+            inside &= points @ plane[:, :2].T >= plane[:, 2] - slack
+        triples = np.empty((len(points), 3), np.int64)
+        good = np.ones(len(points), dtype=bool)
+        for finger in range(3):
+            gap = features.feet(points) - found.contacts[:, finger][:, None]
+            off = np.where(inside, np.hypot(gap[..., 0], gap[..., 1]), np.inf)
+            triples[:, finger] = np.argmin(off, axis=1)
+            good &= off.min(axis=1) <= near
+        return triples[good], points[good]
 
 
-def best_first(found: Iterable[Found]) -> list[tuple[Candidate, FloatArray]]:
-    """Those that are grasps, best first."""
-    good = [(c, p) for c, p in found if c is not None]
-    return sorted(good, key=lambda pair: (-pair[0].score, pair[0].triple))
+def _side(contacts: FloatArray) -> FloatArray:
+    """(n,) distance of the first two contacts (n, 3, 2)."""
+    side = contacts[:, 1] - contacts[:, 0]
+    return np.hypot(side[:, 0], side[:, 1])
+
+
+def _limits(outline: Outline, radius: float, wanted: Wanted) -> Limits:
+    """The limits of the hand in numbers for the kernels."""
+    hand = wanted.limits
+    gap = LEAST_GAP * outline.diameter if hand.least_gap is None else hand.least_gap
+    phi_1, phi_2, within = (0.0, 0.0, math.inf) if wanted.near is None else wanted.near
+    return Limits(
+        least_distance=max(
+            2.0 * radius + gap,
+            2.02 * radius,
+            _LEAST * outline.diameter,
+            _OF_TOLERANCE * wanted.tolerance,
+        ),
+        # whoever asks for a shape gets it, however flat
+        least_angle=0.0 if wanted.near is not None else hand.least_angle,
+        widest=WIDEST,
+        sigma_least=hand.sigma_least,
+        sigma_most=hand.sigma_most,
+        phi_1=phi_1,
+        phi_2=phi_2,
+        within=within,
+    )

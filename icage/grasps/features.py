@@ -8,11 +8,12 @@ sufficient, not necessary, and do not tell squeezing from stretching.)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import BoolArray, FloatArray, IntArray
+from icage.grasps.kernels.hands import HandLimits
 from icage.grasps.kernels.triples import (
     EDGE,
     VERTEX,
@@ -40,8 +41,7 @@ _STEP = 0.1
 """[diameter] ... this far apart, where the middle of the set and its surroundings hold nothing."""
 
 
-@dataclass(frozen=True, slots=True)
-class Features:
+class Features(NamedTuple):
     """Contact features as arrays; ``planes`` (n, 2, 3) are a x + b y >= c for P."""
 
     kind: IntArray
@@ -50,13 +50,17 @@ class Features:
     normal: FloatArray
     planes: FloatArray
 
-    def __len__(self) -> int:
-        return len(self.kind)
-
     def contacts(self, triple: IntArray, p: FloatArray) -> FloatArray:
         """Finger positions (3, 2) of a triple of features for a concurrency point P."""
         rows = [contact_at(self.kind[f], self.point[f], self.normal[f], p[0], p[1]) for f in triple]
         return np.array([(row.x, row.y) for row in rows])
+
+    def feet(self, points: FloatArray) -> FloatArray:
+        """(n, features, 2) finger positions on all features for points of concurrency (n, 2)."""
+        gap = points[:, None, :] - self.point
+        along = (gap * self.normal).sum(axis=2)
+        on_edge = points[:, None, :] - along[..., None] * self.normal
+        return np.where((self.kind == EDGE)[None, :, None], on_edge, self.point)
 
     def allows(self, triple: IntArray, p: FloatArray) -> bool:
         """Whether P lies in the sets of all three features."""
@@ -64,15 +68,37 @@ class Features:
         return bool((planes[:, 0] * p[0] + planes[:, 1] * p[1] >= planes[:, 2]).all())
 
 
-def features_of(outline: Outline, *, longer_than: float = 0.0) -> Features:
-    """Edges (longer than a bound, to leave out the chords of arcs) and concave vertices."""
+_NEIGHBOURS = (1, -1, 2, -2, 3, -3)
+"""Features along the outline that may take a finger over, nearest first."""
+
+
+def neighbours(features: Features) -> IntArray:
+    """(n, k) features that follow or precede each along the outline, nearest first."""
+    place = features.index + np.where(features.kind == EDGE, 0.5, 0.0)
+    order = np.argsort(place, kind="stable")
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return order[(rank[:, None] + np.array(_NEIGHBOURS)) % len(order)]
+
+
+def features_of(
+    outline: Outline,
+    *,
+    longer_than: float = 0.0,
+    arc: tuple[FloatArray, float, float] | None = None,
+) -> Features:
+    """Edges (longer than a bound) and concave vertices.
+
+    ``arc`` (centres (n, 2), radius, sagitta): chords of arcs of this radius round one of the
+    centres, perhaps cut short, are no edges.
+    """
     a = outline.vertices
     b = np.roll(a, -1, axis=0)
     side = b - a
     length = np.hypot(side[:, 0], side[:, 1])
     tangent = side / length[:, None]
     inward = np.column_stack([-tangent[:, 1], tangent[:, 0]])
-    edges = np.flatnonzero(length > longer_than)
+    edges = np.flatnonzero((length > longer_than) & ~_are_chords(a, b, arc, outline.diameter))
     strips = np.stack(
         [
             np.column_stack([tangent, (tangent * a).sum(axis=1)]),
@@ -103,33 +129,54 @@ def features_of(outline: Outline, *, longer_than: float = 0.0) -> Features:
     )
 
 
+_ON_ARC = 1e-9
+"""[diameter] How far the end of a chord may be off its circle."""
+
+
+def _are_chords(
+    a: FloatArray, b: FloatArray, arc: tuple[FloatArray, float, float] | None, diameter: float
+) -> BoolArray:
+    """Which segments from a to b (n, 2) are chords of a circle of the radius round a centre."""
+    if arc is None:
+        return np.zeros(len(a), dtype=bool)
+    centres, radius, sagitta = arc
+    off = _ON_ARC * diameter
+
+    def on(points: FloatArray) -> BoolArray:
+        gap = points[:, None, :] - centres
+        short = radius - np.hypot(gap[..., 0], gap[..., 1])
+        return (short >= -off) & (short <= sagitta + off)
+
+    return (on(a) & on(b)).any(axis=1)
+
+
 def balanced_triples(
-    features: Features, outline: Outline, apart: float
+    features: Features, outline: Outline, limits: HandLimits, part: int = 0, parts: int = 1
 ) -> tuple[IntArray, FloatArray]:
     """All triples of features that can balance and squeeze, and a concurrency point for each.
+
+    ``limits`` are those of the hand on them. Only every ``parts``-th of the features comes first in
+    a triple, from ``part`` on: all parts together are all triples.
 
     Complexity: O(n^3) clips of small convex polygons, about 0.2 us each.
     """
     size = outline.diameter
     return feasible_triples(
         features.kind, features.point, features.normal, features.planes,
-        outline.centroid, _REACH * size, _NEAR * size, _STEP * size, apart,
+        outline.centroid, _REACH * size, _NEAR * size, _STEP * size, limits, part, parts,
     )  # fmt: skip
 
 
 def further_points(
-    features: Features, outline: Outline, apart: float, triple: IntArray, fair: tuple[float, float]
-) -> list[tuple[IntArray, FloatArray]]:
-    """Points of concurrency spread over the whole set of a triple, each with the triple again.
+    features: Features, outline: Outline, limits: HandLimits, triple: IntArray
+) -> tuple[IntArray, FloatArray]:
+    """Points of concurrency (n, 2) spread over the whole set of a triple, with a triple (n, 3) each.
 
     Its features are in counterclockwise order of their contacts, which depends on the point.
-    ``fair`` are the most that the longest side of the hand may be over the shortest, and the least
-    that its height may be over the longest side.
     """
     size = outline.diameter
     points, turns = points_of_triple(
         features.kind, features.point, features.normal, features.planes, outline.centroid,
-        _REACH * size, _NEAR * size, _STEP * size, apart, triple, *fair,
+        _REACH * size, _NEAR * size, _STEP * size, limits, triple,
     )  # fmt: skip
-    ways = {1: triple, -1: triple[[0, 2, 1]]}
-    return [(ways[int(turn)], p) for p, turn in zip(points, turns, strict=True)]
+    return np.where(turns[:, None] > 0, triple, triple[[0, 2, 1]]), points

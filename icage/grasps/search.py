@@ -1,56 +1,90 @@
 """Good target grasps of an outline: all triples of contacts that squeeze, the best made better.
 
 On real tools most immobilizing grasps have useless cages, so enumeration alone is not enough:
-every triple of features is tried, the promising ones at more points of concurrency, and the best
-are improved by moving their contacts continuously. Our own; the sets are those of [Bunis2018,
+every triple of features is tried, the promising ones at more points of concurrency and on the
+features beside them, and the best are improved by moving their contacts continuously. The search
+may be stopped at any time and then has the best so far. Our own; the sets are those of [Bunis2018,
 Sec. VII-A] with the squeezing test.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 from icage.errors import GraspError, InputError
 from icage.geometry.near_frame import NearFrame
-from icage.grasps.evaluator import GraspEvaluator, Job, best_first
+from icage.grasps.crew import Crew, OutOfTimeError, Progress
+from icage.grasps.evaluator import SEGMENTS, GraspEvaluator
+from icage.grasps.findings import Findings, groups
+from icage.grasps.features import neighbours
 from icage.grasps.wanted import Candidate, Wanted
-from icage.grasps.workers import Progress, Workers, elsewhere_chunk, improve_chunk, try_chunk
 from icage.outline import Outline
 
 _ANY = Wanted()
 """Any grasp, by sigma_first / sigma_0."""
 
-_FEW = 100
-"""Triples up to which all are tried at so many points."""
+_COARSE = 6
+"""Segments of an arc per quadrant where discs are searched first: levels good to some 1e-3."""
 
-_MORE_POINTS = 8
+_MOST_TRIPLES = 20_000
+"""Triples that are tried, a random choice if there are more; how many are left out is told."""
+
+_MOST_FURTHER = 12_000
+"""Candidates at other points of triples that had nothing where they were tried first."""
+
+_FEW = 400
+"""Triples up to which all are tried at other points."""
 
 _PROMISING = 300
+_AROUND = 8
+"""Points round each of the promising ones, and ..."""
 
-_IMPROVED = 32
+_BESIDE = 2
+"""... points at which each finger is also put on the features beside its own."""
 
-_SAME_PLACE = 0.02
-"""[diameter] Grasps whose contacts are all nearer to each other than this are one."""
+_IMPROVED = ((64, 0.03, 40), (24, 0.01, 40), (12, 0.003, 40), (8, 0.001, 40), (6, 0.0002, 40))
+"""Grasps that are improved, by simplexes of which size [diameter], with how many candidates: those
+that come furthest go on."""
+
+_AGAIN = 240
+"""Grasps of discs, found between coarse chords, that are compared between finer ones."""
+
+_POLISHED = ((12, 0.004, 40), (8, 0.001, 40), (6, 0.0002, 40))
+
+Ended: TypeAlias = Literal["out of time", "interrupted"]
 
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
     """Everything that was found, best first, and what was not looked at.
 
-    ``candidates`` may be near each other. ``broken_off`` counts grasps whose search was larger than
-    allowed, ``triples_left_out`` those of all ``triples`` of contact features that were not drawn.
+    Attributes
+    ----------
+    candidates:
+        They may be near each other.
+    triples, triples_left_out:
+        Triples of contact features, and those of them that were not drawn.
+    broken_off:
+        Grasps whose search was larger than allowed.
+    compared:
+        Candidates that were looked at.
+    ended:
+        What ended the search before its own end, or None.
     """
 
     candidates: tuple[Candidate, ...]
     triples: int
     triples_left_out: int
     broken_off: int
+    compared: int = 0
+    ended: Ended | None = None
 
 
-def _silent(_stage: str, _done: int, _total: int) -> None:
+def _silent(_stage: str, _done: int, _total: int, _best: float | None) -> None:
     """No progress report."""
 
 
@@ -62,6 +96,7 @@ def ranked_grasps(
     rng: np.random.Generator,
     workers: int = 1,
     progress: Progress = _silent,
+    seconds: float | None = None,
 ) -> Ranking:
     """All grasps that were found, best first.
 
@@ -75,40 +110,205 @@ def ranked_grasps(
         "cage" by sigma_max / sigma_0 (the largest sigma of the component for a hand that never
         escapes).
     workers:
-        Processes; the result does not depend on it.
+        Threads; the result does not depend on their number.
+    seconds:
+        When to stop with what there is. Ctrl-C does the same. None: the search ends by itself.
 
     Raises
     ------
     GraspError:
-        No immobilizing grasp was found.
+        No immobilizing grasp within the limits was found.
     """
     frame = NearFrame.of(outline)
     outline = frame.outline_into(outline)
-    evaluator = GraspEvaluator(outline, finger_radius, wanted)
-    with Workers(outline, finger_radius, wanted, workers, evaluator) as pool:
-        jobs = evaluator.jobs(rng)
-        found = pool.run(try_chunk, jobs, "every triple", progress)
-        few = len(jobs) <= _FEW
-        without = [job for job, (c, _) in zip(jobs, found, strict=True) if few or c is None]
-        found += pool.run(elsewhere_chunk, without, "elsewhere", progress)
-        ranked = best_first(found)
-        more: list[Job] = []
-        for candidate, p in ranked[:_PROMISING]:
-            triple = np.array(candidate.triple)
-            if evaluator.movable(triple):
-                more += [(triple, q) for q in _around(p, evaluator, rng)]
-        ranked = best_first(found + pool.run(try_chunk, more, "promising ones", progress))
-        seeds: list[Job] = [
-            (np.array(c.triple), p) for c, p in _starts(ranked, 0.1 * evaluator.outline.diameter)
-        ]
-        better = pool.run(improve_chunk, seeds, "improving", progress)
-    best = [c for c, _ in best_first(better + [(c, p) for c, p in ranked])]
-    if not best:
-        raise GraspError("no immobilizing three-finger grasp was found on this outline")
+    wanted = replace(wanted, avoid=_boxes_into(frame, wanted))
+    search = _Search(outline, finger_radius, wanted, rng)
+    ended: Ended | None = None
+    with Crew(workers, progress, seconds) as crew:
+        try:
+            search.run(crew)
+        except OutOfTimeError:
+            ended = "out of time"
+        except KeyboardInterrupt:
+            ended = "interrupted"
+    best = search.best_first()
+    if not len(best):
+        when = "" if ended is None else f" before the search was {_WORDS[ended]}"
+        raise GraspError(
+            f"no immobilizing three-finger grasp was found on this outline{when}{_within(wanted)}"
+        )
     return Ranking(
-        tuple(replace(c, contacts=frame.back(c.contacts)) for c in best),
-        evaluator.triples, evaluator.triples_left_out, pool.broken_off,
+        tuple(replace(c, contacts=frame.back(c.contacts)) for c in best.candidates()),
+        search.triples, search.left_out, search.broken_off, crew.compared, ended,
     )  # fmt: skip
+
+
+_WORDS = {"out of time": "out of time", "interrupted": "interrupted"}
+
+
+def _within(wanted: Wanted) -> str:
+    """Which limits may have been too narrow."""
+    return (
+        " within the limits of the hand (least angle, least gap, smallest and largest sigma, places "
+        "to avoid, corners): widen them to see more"
+    )
+
+
+def _boxes_into(frame: NearFrame, wanted: Wanted) -> tuple[tuple[float, float, float, float], ...]:
+    """The boxes in the frame near the object, which is only shifted."""
+    found: list[tuple[float, float, float, float]] = []
+    for box in wanted.avoid:
+        low, high = frame.into(np.array([box[:2], box[2:]])).tolist()
+        found.append((low[0], low[1], high[0], high[1]))
+    return tuple(found)
+
+
+class _Search:
+    """The stages of one search; what they find is kept as they go."""
+
+    def __init__(
+        self, outline: Outline, radius: float, wanted: Wanted, rng: np.random.Generator
+    ) -> None:
+        self.outline, self.radius, self.wanted, self.rng = outline, radius, wanted, rng
+        self.triples = self.left_out = 0
+        self.found: list[Findings] = []
+        self.fine: list[Findings] = []
+        self.evaluator: GraspEvaluator | None = None
+        self.finer: GraspEvaluator | None = None
+
+    @property
+    def broken_off(self) -> int:
+        """Searches that were too large."""
+        used = [e for e in (self.evaluator, self.finer) if e is not None]
+        return sum(e.broken_off for e in used)
+
+    def best_first(self) -> Findings:
+        """What there is: grasps compared between finer chords come first."""
+        return Findings.together(
+            [Findings.together(self.fine).best_first(), Findings.together(self.found).best_first()]
+        )
+
+    def run(self, crew: Crew) -> None:
+        """All stages; ``OutOfTimeError`` and Ctrl-C may end them."""
+        segments = _COARSE if self.radius > 0.0 else SEGMENTS
+        evaluator = GraspEvaluator(self.outline, self.radius, self.wanted, segments)
+        self.evaluator = evaluator
+        self._every_triple(evaluator, crew)
+        self._promising(evaluator, crew)
+        starts = self._starts(_IMPROVED[0][0])
+        self._improve(evaluator, crew, starts, _IMPROVED, "improving", self.found)
+        if self.radius > 0.0:
+            self._between_finer_chords(crew)
+
+    def _every_triple(self, evaluator: GraspEvaluator, crew: Crew) -> None:
+        """Each once, and at other points where it has nothing there."""
+        parts = 16
+        shares = list(
+            crew.map(lambda part: evaluator.triples(part, parts), list(range(parts)), "triples")
+        )
+        triples = np.concatenate([t for t, _ in shares])
+        points = np.concatenate([p for _, p in shares])
+        self.triples = len(triples)
+        self.left_out = max(0, self.triples - _MOST_TRIPLES)
+        if self.left_out:
+            use = np.sort(self.rng.choice(self.triples, _MOST_TRIPLES, replace=False))
+            triples, points = triples[use], points[use]
+        triples, points = evaluator.shaped(triples, points)
+        rows, _ = crew.grasps(evaluator, triples, points, "every triple", self.found)
+        without = np.ones(len(triples), dtype=bool)
+        without[rows] = len(triples) <= _FEW
+        again = np.flatnonzero(without)
+        if not len(again):
+            return
+        most = max(1, min(12, _MOST_FURTHER // len(again)))
+        if len(again) > _MOST_FURTHER:
+            again = np.sort(self.rng.choice(again, _MOST_FURTHER, replace=False))
+        chunks = [again[k : k + 64] for k in range(0, len(again), 64)]
+
+        def further(chunk: IntArray) -> tuple[IntArray, FloatArray]:
+            each = [evaluator.further(triples[k], most) for k in chunk]
+            return np.concatenate([t for t, _ in each]), np.concatenate([p for _, p in each])
+
+        more = list(crew.map(further, chunks, "other points", 64))
+        crew.grasps(
+            evaluator,
+            *evaluator.shaped(np.concatenate([t for t, _ in more]),
+                              np.concatenate([p for _, p in more])),
+            "elsewhere", self.found,
+        )  # fmt: skip
+
+    def _promising(self, evaluator: GraspEvaluator, crew: Crew) -> None:
+        """Round the best, at several scales, and on the features beside theirs."""
+        best = Findings.together(self.found).best_first()
+        best = best.of(np.arange(min(_PROMISING, len(best))))
+        if not len(best):
+            return
+        size = self.outline.diameter
+        scale = size * np.resize(np.array([0.02, 0.05, 0.1, 0.2]), (_AROUND, 1))
+        shift = scale * self.rng.standard_normal((len(best), _AROUND, 2))
+        points = (best.points[:, None] + shift).reshape(-1, 2)
+        beside = neighbours(evaluator.features)
+        triples = [np.repeat(best.triples, _AROUND, axis=0)]
+        where = [points]
+        for finger in range(best.triples.shape[1]):
+            other = best.triples.copy()
+            for along in range(_BESIDE):
+                other[:, finger] = beside[best.triples[:, finger], along]
+                triples.append(other.copy())
+                where.append(best.points + 0.02 * size * self.rng.standard_normal((len(best), 2)))
+        crew.grasps(
+            evaluator, np.concatenate(triples), np.concatenate(where), "promising ones", self.found
+        )
+
+    def _starts(self, most: int) -> Findings:
+        """Where the improvement starts: the best of every idea and of every triple, by turns."""
+        best = Findings.together(self.found).best_first()
+        best = best.of(np.arange(min(20 * _PROMISING, len(best))))
+        size = self.outline.diameter
+        ideas = [int(group[0]) for group in groups(best.contacts, size, most // 2)]
+        _, triples = np.unique(np.sort(best.triples, axis=1), axis=0, return_index=True)
+        others = [k for k in np.sort(triples).tolist() if k not in ideas]
+        return best.of(np.array((ideas + others)[:most], np.int64))
+
+    def _between_finer_chords(self, crew: Crew) -> None:
+        """The best grasps of discs again where their levels are good to 1e-4, and polished."""
+        finer = GraspEvaluator(self.outline, self.radius, self.wanted, SEGMENTS)
+        self.finer = finer
+        best = Findings.together(self.found).best_first()
+        ideas = groups(best.contacts, self.outline.diameter, _AGAIN // 4)
+        rows = np.concatenate([group[:4] for group in ideas]) if ideas else np.empty(0, np.int64)
+        triples, points = finer.on_features(best.of(rows))
+        crew.grasps(finer, triples, points, "finer chords", self.fine)
+        again = Findings.together(self.fine).best_first()
+        first = [g[0] for g in groups(again.contacts, self.outline.diameter, _POLISHED[0][0])]
+        seeds = again.of(np.array(first, np.int64))
+        self._improve(finer, crew, seeds, _POLISHED, "polishing", self.fine)
+
+    def _improve(
+        self, evaluator: GraspEvaluator, crew: Crew, seeds: Findings,
+        rounds: tuple[tuple[int, float, int], ...], stage: str, keep: list[Findings],
+    ) -> None:  # fmt: skip
+        """Move the contacts of the seeds; what they have become goes on to the next round."""
+        size = self.outline.diameter
+        for number, (most, stride, steps) in enumerate(rounds, 1):
+            best = seeds.best_first()
+            seeds = best.of(np.arange(min(most, len(best))))
+
+            # a simplex may miss a ridge that its mirror image finds: the first are sent out twice
+            ways = [(row, 1.0) for row in range(len(seeds))]
+            ways += [(row, -1.0) for row in range(min(len(seeds), most // 3))]
+
+            def climbed(
+                way: tuple[int, float], seeds: Findings = seeds, stride: float = stride,
+                steps: int = steps,
+            ) -> Findings:  # fmt: skip
+                row, sign = way
+                return evaluator.climbed(
+                    seeds.triples[row], seeds.points[row], sign * stride * size, steps
+                )
+
+            told = f"{stage} ({number} of {len(rounds)})"
+            seeds = Findings.together(list(crew.climbs(climbed, ways, told, steps, keep)))
 
 
 def best_grasps(
@@ -120,50 +320,14 @@ def best_grasps(
     rng: np.random.Generator,
     workers: int = 1,
     progress: Progress = _silent,
+    seconds: float | None = None,
 ) -> list[Candidate]:
-    """The ``top`` best of ``ranked_grasps``, no two with nearly the same contacts."""
+    """The ``top`` best of ``ranked_grasps``, each another idea (``icage.grasps.findings``)."""
     if top < 1:
         raise InputError(f"top = {top}; at least 1 is needed")
     ranking = ranked_grasps(
         outline, finger_radius=finger_radius, wanted=wanted, rng=rng, workers=workers,
-        progress=progress,
+        progress=progress, seconds=seconds,
     )  # fmt: skip
-    kept: list[Candidate] = []
-    for candidate in ranking.candidates:
-        if not any(same_place(outline, candidate.contacts, other.contacts) for other in kept):
-            kept.append(candidate)
-            if len(kept) == top:
-                break
-    return kept
-
-
-def _around(p: FloatArray, evaluator: GraspEvaluator, rng: np.random.Generator) -> FloatArray:
-    """Points of concurrency near P, at several scales."""
-    scale = evaluator.outline.diameter * np.array([0.02, 0.05, 0.1, 0.2])
-    size = np.resize(scale, _MORE_POINTS)
-    return p + size[:, None] * rng.standard_normal((_MORE_POINTS, 2))
-
-
-def _starts(
-    ranked: list[tuple[Candidate, FloatArray]], apart: float
-) -> list[tuple[Candidate, FloatArray]]:
-    """Where the improvement starts: the best of every triple, then others of it if room is left.
-
-    A triple may hold in several places with nothing between; P of two starts are ``apart`` [unit].
-    """
-    first: dict[tuple[int, int, int], list[FloatArray]] = {}
-    kept: list[tuple[Candidate, FloatArray]] = []
-    others: list[tuple[Candidate, FloatArray]] = []
-    for candidate, p in ranked:
-        points = first.setdefault(candidate.triple, [])
-        if all(float(np.hypot(*(p - q))) >= apart for q in points):
-            (others if points else kept).append((candidate, p))
-            points.append(p)
-    return (kept + others)[:_IMPROVED]
-
-
-def same_place(outline: Outline, a: FloatArray, b: FloatArray) -> bool:
-    """Whether the contacts of two grasps all lie near each other (in any labelling)."""
-    near = _SAME_PLACE * outline.diameter
-    copies = (np.roll(a, k, axis=0) for k in range(len(a)))
-    return any(float(np.hypot(*(c - b).T).max()) < near for c in copies)
+    contacts = np.array([c.contacts for c in ranking.candidates])
+    return [ranking.candidates[int(group[0])] for group in groups(contacts, outline.diameter, top)]

@@ -1,55 +1,147 @@
-"""Which grasps are looked for, and a grasp that was found."""
+"""Which grasps are looked for, for which hands, and a grasp that was found."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
-
-import numpy as np
+import math
+from dataclasses import dataclass, field
+from typing import Final, Literal, TypeAlias
 
 from icage.arrays import FloatArray
-from icage.hand import HandShape
+from icage.checks import a_number
+from icage.errors import InputError
 
 Aim: TypeAlias = Literal["first", "cage"]
 """What is ranked: sigma_first / sigma_0, or sigma_max / sigma_0."""
+
+Box: TypeAlias = tuple[float, float, float, float]
+"""x_low, y_low, x_high, y_high, [unit]."""
+
+LEAST_ANGLE: Final = math.radians(15.0)
+"""[rad] Flatter hands are hard to build: their middle finger stands between the others."""
+
+LEAST_GAP: Final = 0.02
+"""[diameter] Fingers have to be somewhere: the free gap between two, where none is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandLimits:
+    """What a real hand can be. Sigma is measured between the two fingers that are furthest apart
+    (where a shape is wanted: between its fingers 1 and 2).
+
+    Attributes
+    ----------
+    least_angle:
+        [rad] The least angle of its triangle.
+    least_gap:
+        [unit] The least free gap between two fingers on the target; None: 2 % of the object's
+        diameter.
+    sigma_least:
+        [unit] As far as the hand closes: the target must not need less.
+    sigma_most:
+        [unit] As far as the hand opens: the target must need less, and a cage counts up to there.
+
+    Raises
+    ------
+    InputError:
+        A limit that no hand can meet.
+
+    Examples
+    --------
+    >>> HandLimits(least_angle=0.3, least_gap=5.0).sigma_most
+    inf
+    """
+
+    least_angle: float = LEAST_ANGLE
+    least_gap: float | None = None
+    sigma_least: float = 0.0
+    sigma_most: float = math.inf
+
+    def __post_init__(self) -> None:
+        a_number(self.least_angle, "least_angle")
+        if not 0.0 <= self.least_angle < math.pi / 3.0:
+            raise InputError(
+                f"least_angle = {self.least_angle:g} rad; a triangle has an angle of at most 60 "
+                "degrees, and less than that is needed"
+            )
+        if self.least_gap is not None:
+            a_number(self.least_gap, "least_gap")
+            if self.least_gap < 0.0:
+                raise InputError(f"least_gap = {self.least_gap:g}; 0 or more is needed")
+        a_number(self.sigma_least, "sigma_least")
+        if self.sigma_most != math.inf:
+            a_number(self.sigma_most, "sigma_most")
+        if not 0.0 <= self.sigma_least < self.sigma_most:
+            raise InputError(
+                f"sigma from {self.sigma_least:g} to {self.sigma_most:g}: 0 <= least < most is "
+                "needed"
+            )
+
+
+ANY_HAND: Final = HandLimits(least_angle=0.0, least_gap=0.0)
+"""No limits but those of the search itself: hands too long or flat for any use."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """Which grasps are looked for.
 
-    ``aim`` is what is ranked; ``corners`` the least number of fingers in concave corners (three
-    straight edges are of second-order immobility only); ``near`` = (phi_1, phi_2, within), [rad],
-    keeps to hands of about one shape, read from any finger.
+    Attributes
+    ----------
+    aim:
+        What is ranked.
+    corners:
+        The least number of fingers in concave corners (three straight edges are of second-order
+        immobility only).
+    near:
+        (phi_1, phi_2, within), [rad]: keeps to hands of about one shape, read from any finger.
+    limits:
+        Of the hand.
+    avoid:
+        Boxes, [unit], into which no finger may reach on the target.
+    tolerance:
+        [unit] How wrong the outline may be: fingers must be ten times further apart, and the cage
+        must be that deep.
     """
 
     aim: Aim = "first"
     corners: int = 0
     near: tuple[float, float, float] | None = None
+    limits: HandLimits = field(default_factory=HandLimits)
+    avoid: tuple[Box, ...] = ()
+    tolerance: float = 0.0
 
-    def shape_error(self, hand: HandShape) -> FloatArray:
-        """Difference (phi_1, phi_2) from the wanted shape in the best of the three readings."""
-        if self.near is None:
-            return np.zeros(2)
-        phis = np.array([hand.relabelled(first).phi for first in range(3)])
-        errors = phis - np.array(self.near[:2])
-        return errors[int(np.argmin(np.abs(errors).max(axis=1)))]
-
-    def allows(self, hand: HandShape) -> bool:
-        """Whether the hand has about the wanted shape."""
-        if self.near is None:
-            return True
-        return bool(np.abs(self.shape_error(hand)).max() <= self.near[2])
+    def __post_init__(self) -> None:
+        if self.aim not in ("first", "cage"):
+            raise InputError(f"aim = {self.aim!r}; 'first' or 'cage' is needed")
+        a_number(self.tolerance, "tolerance")
+        if self.tolerance < 0.0:
+            raise InputError(f"tolerance = {self.tolerance:g}; 0 or more is needed")
+        for box in self.avoid:
+            for value in box:
+                a_number(value, "avoid")
+            if box[0] > box[2] or box[1] > box[3]:
+                raise InputError(f"avoid = {box}; x_low <= x_high and y_low <= y_high are needed")
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A grasp and its levels as found on the polygon that was searched, [unit]."""
+    """A grasp as found on the polygon that was searched.
+
+    Attributes
+    ----------
+    contacts:
+        (3, 2) [unit], counterclockwise.
+    triple:
+        Contact features (see Features), in the order of the contacts.
+    sigma_0, level:
+        [unit] Of the target, and the one that is ranked: sigma_first, sigma_max, or the largest
+        sigma of a hand that never escapes; never more than the hand can open.
+    score:
+        level / sigma_0.
+    """
 
     contacts: FloatArray
     triple: tuple[int, int, int]
-    """Contact features (see Features), counterclockwise."""
     sigma_0: float
-    sigma_first: float
-    sigma_max: float
+    level: float
     score: float

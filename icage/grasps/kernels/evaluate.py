@@ -23,11 +23,11 @@ from icage.cells.kernels.columns import (
     RECORD_LEVEL,
     Ending,
 )
+from icage.cells.kernels.largest import largest_sigma
 from icage.cells.kernels.minimum import MOST_CELLS, nearest_minimum
 from icage.cells.kernels.near import Hand
 from icage.cells.kernels.search import explore
 from icage.grasps.kernels.hands import first_finger, in_a_box
-from icage.grasps.kernels.triples import contact_at
 from icage.kernels.compiled import compiled
 from icage.kernels.locate import depth_inside
 from icage.tolerance import (
@@ -39,7 +39,7 @@ from icage.tolerance import (
     TARGET_TURN,
 )
 
-GAVE_UP, CLOSED_IN, ESCAPED, MET = Ending
+GAVE_UP, _, _, MET = Ending
 
 
 class Verdict(IntEnum):
@@ -53,12 +53,10 @@ class Verdict(IntEnum):
     """It opens at once."""
     BROKEN_OFF = 3
     """Its search was larger than allowed."""
-    NEVER_ESCAPES = 4
-    """A cage whose largest sigma is not known yet: ``level`` is nan."""
-    CAGE = 5
+    CAGE = 4
 
 
-OUTSIDE, NO_MINIMUM, NO_CAGE, BROKEN_OFF, NEVER_ESCAPES, CAGE = Verdict
+OUTSIDE, NO_MINIMUM, NO_CAGE, BROKEN_OFF, CAGE = Verdict
 
 
 class Sought(NamedTuple):
@@ -96,18 +94,17 @@ class Evaluated(NamedTuple):
 
 
 @compiled
-def _is_allowed(planes, triple, px, py):
-    """Whether P lies in the sets of all three features."""
-    for f in triple:
-        for side in range(2):
-            if planes[f, side, 0] * px + planes[f, side, 1] * py < planes[f, side, 2]:
-                return False
+def is_in_set(planes, f, px, py):
+    """Whether P lies in the set of feature f."""
+    for side in range(2):
+        if planes[f, side, 0] * px + planes[f, side, 1] * py < planes[f, side, 2]:
+            return False
     return True
 
 
 @compiled
-def _level(found, sigma_0, first, most, diameter):
-    """The level that is ranked, nan if the hand never escapes, 0 if it holds nothing."""
+def _level(found, sigma_0, first, diameter):
+    """The level that is ranked, inf if the hand never escapes, 0 if it holds nothing."""
     cut = DEPTH_CUT * diameter
     escape = found.level
     below = escape * (1.0 - 2.0 * LEVEL)
@@ -120,9 +117,7 @@ def _level(found, sigma_0, first, most, diameter):
             if first:
                 level = at
             break
-    if level == np.inf and found.outcome == CLOSED_IN and escape == np.inf:
-        return np.nan if most == np.inf else most
-    return min(level, most)
+    return level
 
 
 @compiled
@@ -167,35 +162,10 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     )
     if found.outcome == GAVE_UP:
         return BROKEN_OFF, first, sigma_0, 0.0
-    level = _level(found, sigma_0, sought.first, most, pieces.diameter)
-    if math.isnan(level):
-        return NEVER_ESCAPES, first, sigma_0, level
+    level = _level(found, sigma_0, sought.first, pieces.diameter)
+    if level == np.inf:
+        level = largest_sigma(pieces, z, found.nodes, most)
+    level = min(level, most)
     if level / sigma_0 - 1.0 < NOT_A_CAGE:
         return NO_CAGE, first, sigma_0, level
     return CAGE, first, sigma_0, level
-
-
-@compiled
-def evaluate_jobs(pieces, origin, ring, features, triples, points, limits, sought):
-    """``Evaluated`` of each triple (n, 3) of features with its point of concurrency (n, 2)."""
-    n = len(triples)
-    verdict = np.zeros(n, np.int64)
-    contacts = np.zeros((n, 3, 2))
-    levels = np.zeros((n, 2))
-    first = np.zeros(n, np.int64)
-    x = np.empty(3)
-    y = np.empty(3)
-    for row in range(n):
-        px, py = points[row, 0], points[row, 1]
-        if not _is_allowed(features.planes, triples[row], px, py):
-            continue
-        for k in range(3):
-            f = triples[row, k]
-            at = contact_at(features.kind[f], features.point[f], features.normal[f], px, py)
-            x[k], y[k] = at.x, at.y
-        verdict[row], first[row], levels[row, 0], levels[row, 1] = evaluate(
-            pieces, origin, ring, x, y, limits, sought
-        )
-        for k in range(3):
-            contacts[row, k, 0], contacts[row, k, 1] = x[k], y[k]
-    return Evaluated(verdict, contacts, levels, first)

@@ -38,6 +38,10 @@ class HandLimits(NamedTuple):
     within: float
 
 
+_FLATTEST = 0.05
+"""[1] Least height over longest side of any hand that is searched."""
+
+
 @compiled
 def first_finger(x, y, limits):
     """Which of three counterclockwise contacts is finger 1 (0..2), and whether the hand may be: -1.
@@ -59,7 +63,7 @@ def first_finger(x, y, limits):
         g = (k + 2) % 3
         ax, ay, bx, by = x[h] - x[k], y[h] - y[k], x[g] - x[k], y[g] - y[k]
         angle[k] = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
-        if angle[k] < limits.least_angle or angle[k] <= 0.0:
+        if angle[k] < limits.least_angle or ax * by - ay * bx < _FLATTEST * longest * longest:
             return -1
     first = 0
     if limits.within < np.inf:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from icage.grasps.kernels.hands import first_finger
 from icage.kernels.compiled import compiled
 
 _CORNERS = 16
@@ -16,10 +17,6 @@ _CORNERS = 16
 
 _LEAST_SHARE = 1e-6
 """[1] A finger whose share of the force is no larger than this carries none."""
-
-_NO_TRIANGLE = 1e-3
-"""[1] Contacts on a triangle flatter than this (twice its area over the square of its shortest
-side) make no hand."""
 
 _NOTHING = 1e-300
 """[unit] What is divided by instead of a distance 0."""
@@ -129,10 +126,10 @@ def _cut(planes, f, qx, qy, n, ox, oy):
 
 
 @compiled
-def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy):
+def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, limits, x, y, fx, fy):
     """Twice the signed area of the contacts for lines of force through P, 0 if they are no grasp.
 
-    ``apart`` is the least finger distance. Fills in contacts and forces, (3,) each.
+    ``limits`` are those of the hand on them. Fills in contacts and forces, (3,) each.
     """
     for s in range(3):
         f = a if s == 0 else (b if s == 1 else c)
@@ -142,25 +139,12 @@ def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, f
         for side in range(2):
             if planes[f, side, 0] * px + planes[f, side, 1] * py < planes[f, side, 2]:
                 return 0.0  # in a set of no width, by rounding
-    area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
-    near = min(
-        math.hypot(x[1] - x[0], y[1] - y[0]),
-        math.hypot(x[2] - x[1], y[2] - y[1]),
-        math.hypot(x[0] - x[2], y[0] - y[2]),
-    )
-    if near < apart or abs(area) < _NO_TRIANGLE * near * near:
+    if not squeezes(x, y, fx, fy):
         return 0.0
-    return area if squeezes(x, y, fx, fy) else 0.0
-
-
-@compiled
-def _is_fair(x, y, area, widest, flattest):
-    """Whether the hand on the contacts is neither too long nor too flat, ratios of its sides."""
-    one = math.hypot(x[1] - x[0], y[1] - y[0])
-    two = math.hypot(x[2] - x[1], y[2] - y[1])
-    three = math.hypot(x[0] - x[2], y[0] - y[2])
-    longest = max(one, two, three)
-    return longest <= widest * min(one, two, three) and abs(area) >= flattest * longest * longest
+    area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+    if area < 0.0:  # the other way round, for the hand
+        x[1], y[1], x[2], y[2] = x[2], y[2], x[1], y[1]
+    return area if first_finger(x, y, limits) >= 0 else 0.0
 
 
 @compiled
@@ -202,13 +186,11 @@ def _near_part(qx, qy, n, middle, near, ox, oy):
 
 
 @compiled
-def points_of_triple(
-    kind, point, normal, planes, middle, reach, near, step, apart, triple, widest, flattest
-):
+def points_of_triple(kind, point, normal, planes, middle, reach, near, step, limits, triple):
     """Points of concurrency spread over all that a triple has: (n, 2), and (n,) orientations.
 
-    Those that balance and squeeze and give a fair hand: ``step`` apart within ``near`` of the
-    middle, a few beyond, up to ``reach``. Orientation 1: the contacts are counterclockwise in the
+    Those that balance and squeeze and give a hand within the limits: ``step`` apart within ``near``
+    of the middle, a few beyond, up to ``reach``. Orientation 1: the contacts are counterclockwise in the
     order of the triple; -1: clockwise.
     """
     qx = np.empty(_CORNERS)
@@ -240,9 +222,9 @@ def points_of_triple(
     for k in range(len(tried)):
         area = _squeezing_area(
             kind, point, normal, planes, triple[0], triple[1], triple[2], tried[k, 0], tried[k, 1],
-            apart, x, y, fx, fy,
+            limits, x, y, fx, fy,
         )  # fmt: skip
-        if area != 0.0 and _is_fair(x, y, area, widest, flattest):
+        if area != 0.0:
             points[count] = tried[k]
             turns[count] = 1 if area > 0.0 else -1
             count += 1
@@ -250,12 +232,13 @@ def points_of_triple(
 
 
 @compiled
-def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apart):
+def feasible_triples(kind, point, normal, planes, middle, reach, near, step, limits, part, parts):
     """All unordered triples with a concurrency point P that balances and squeezes.
 
     Returns (triples (n, 3), points (n, 2)): features in counterclockwise order of their contacts,
     and one P each, well inside the set of possible ones where that will do, else the first of
-    those ``step`` apart within ``near`` of the middle. ``apart`` is the least finger distance.
+    those ``step`` apart within ``near`` of the middle. ``limits`` are those of the hand on them.
+    Only those whose least feature is ``part`` modulo ``parts``: a share for one of several threads.
     """
     n = len(kind)
     triples = np.empty((1024, 3), np.int64)
@@ -273,7 +256,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apa
     y = np.empty(3)
     fx = np.empty(3)
     fy = np.empty(3)
-    for a in range(n):
+    for a in range(part, n, parts):
         q1x[0], q1y[0] = middle[0] - reach, middle[1] - reach
         q1x[1], q1y[1] = middle[0] + reach, middle[1] - reach
         q1x[2], q1y[2] = middle[0] + reach, middle[1] + reach
@@ -305,7 +288,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apa
                     px = cx if k == 0 else 0.5 * (cx + q3x[k - 1])
                     py = cy if k == 0 else 0.5 * (cy + q3y[k - 1])
                     area = _squeezing_area(
-                        kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
+                        kind, point, normal, planes, a, b, c, px, py, limits, x, y, fx, fy
                     )
                     if area != 0.0:
                         break
@@ -317,7 +300,7 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, apa
                     for k in range(len(tried)):
                         px, py = tried[k, 0], tried[k, 1]
                         area = _squeezing_area(
-                            kind, point, normal, planes, a, b, c, px, py, apart, x, y, fx, fy
+                            kind, point, normal, planes, a, b, c, px, py, limits, x, y, fx, fy
                         )
                         if area != 0.0:
                             break
