@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from icage.formats.load import load
     from icage.grasp import Grasp
     from icage.grasps.regrasp import regrasp
+    from icage.grasps.wanted import HandLimits
     from icage.hand import HandShape, Placement
     from icage.outline import Outline
     from icage.placement_class import PlacementClass
@@ -36,6 +37,7 @@ _WHERE = {
     "Case": "icage.case",
     "Grasp": "icage.grasp",
     "GraspMinimum": "icage.cage",
+    "HandLimits": "icage.grasps.wanted",
     "HandShape": "icage.hand",
     "IcageError": "icage.errors",
     "InputError": "icage.errors",
@@ -55,6 +57,7 @@ __all__ = [
     "Case",
     "Grasp",
     "GraspMinimum",
+    "HandLimits",
     "HandShape",
     "IcageError",
     "InputError",

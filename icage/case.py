@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only
-from icage.checks import a_count, an_instance, one_of
+from icage.checks import a_count, a_number, an_instance, one_of
 from icage.contacts import as_contacts, check_contacts, check_radius
-from icage.errors import CaseError, GraspError
+from icage.errors import CaseError, GraspError, InputError
 from icage.grasp import Grasp
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.units import UNITS, Unit
 from icage.values import Value
+
+if TYPE_CHECKING:
+    from icage.grasps.wanted import HandLimits
 
 MAX_NAME: Final = 100
 """Characters of a case's name."""
@@ -119,8 +122,12 @@ class Case(Value):
         *,
         aim: Literal["first", "cage"] = "first",
         rng: np.random.Generator | None = None,
+        limits: HandLimits | None = None,
+        avoid: Sequence[Sequence[float]] = (),
+        tolerance: float = 0.0,
         workers: int = 1,
-        progress: Callable[[str, int, int], None] | None = None,
+        progress: Callable[[str, int, int, float | None], None] | None = None,
+        seconds: float | None = None,
     ) -> tuple[Grasp, ...]:
         """The best target grasps of the object with these fingers, best first. Our own.
 
@@ -132,17 +139,26 @@ class Case(Value):
             Rank by sigma_first / sigma_0 ("first") or by sigma_max / sigma_0 ("cage").
         rng:
             Where the random moves come from; ``numpy.random.default_rng(0)`` if None.
+        limits:
+            What the hand can be; ``HandLimits()`` if None: no angle below 15 degrees, fingers 2 %
+            of the object's diameter apart.
+        avoid:
+            Boxes (x_low, y_low, x_high, y_high), [unit], into which no finger may reach.
+        tolerance:
+            [unit] How wrong the outline may be: smaller or shallower grasps are left out.
         workers:
-            Processes; the result does not depend on it.
+            Threads; the result does not depend on their number.
         progress:
-            Called with (stage, done, total).
+            Called with (stage, done, total, best score so far or None).
+        seconds:
+            When to stop the search with what there is; Ctrl-C does the same. None: when it is done.
 
         Raises
         ------
         GraspError:
             No immobilizing three-finger grasp was found.
         InputError:
-            ``top`` below 1.
+            ``top`` below 1, or a limit that no hand can meet.
 
         Examples
         --------
@@ -152,14 +168,18 @@ class Case(Value):
         True
         """
         from icage.grasps.of_case import best_of_case, grasps_in
-        from icage.grasps.wanted import Wanted
+        from icage.grasps.wanted import HandLimits, Wanted, as_boxes
 
         one_of(aim, ("first", "cage"), "aim")
         a_count(top, "top")
         a_count(workers, "workers")
         draws = np.random.default_rng(0) if rng is None else rng
         an_instance(draws, np.random.Generator, "rng")
-        return grasps_in(best_of_case(self, top, Wanted(aim), draws, workers, progress), aim)
+        hand = HandLimits() if limits is None else an_instance(limits, HandLimits, "limits")
+        wanted = Wanted(aim, limits=hand, avoid=as_boxes(avoid), tolerance=tolerance)
+        if seconds is not None and a_number(seconds, "seconds") <= 0.0:
+            raise InputError(f"seconds is {seconds:g}; more than 0 is needed")
+        return grasps_in(best_of_case(self, top, wanted, draws, workers, progress, seconds), aim)
 
     def _repr_svg_(self) -> str:
         from icage.formats.picture import case_picture

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from experiments.cases.asked import size_words
-from experiments.io.progress import stage_bar
+from experiments.io.progress import search_bar
 from icage.cage import Cage
 from icage.case import Case
 from icage.errors import InputError
@@ -57,7 +57,7 @@ def chosen(case: Case, args: argparse.Namespace, count: int = 1) -> Chosen:
         return Chosen((case,))
     check_radius(case)
     rng, workers = np.random.default_rng(0), min(WORKERS, os.cpu_count() or 1)
-    with stage_bar() as bar:
+    with search_bar() as bar:
         found = best_of_case(case, max(SEARCHED, count), Wanted("first"), rng, workers, bar)
     cages = found.cages[:count]
     if not cages:

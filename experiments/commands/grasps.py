@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from icage.cage import Cage
     from icage.case import Case
     from icage.grasps.planned import PlannedGrasps
-    from icage.grasps.wanted import Aim
+    from icage.grasps.wanted import Aim, Wanted
 
 PHI_SKETCH = """\
 the hand's angles, P1 = phi_1 and P2 = phi_2, in degrees:
@@ -93,6 +93,60 @@ def add_parser(subparsers: Any) -> None:
         default=0,
         help="least number of fingers in concave corners (0)",
     )
+    hand = parser.add_argument_group(
+        "limits of the hand",
+        "Sigma is measured between the two fingers that are furthest apart; with --phi, between "
+        "fingers 1 and 2.",
+    )
+    hand.add_argument(
+        "--least-angle",
+        type=not_negative,
+        metavar="DEG",
+        help="least angle of the hand's triangle, in degrees (15; with --phi 0)",
+    )
+    hand.add_argument(
+        "--least-gap",
+        type=not_negative,
+        metavar="G",
+        help="least free gap between two fingers on the object, in its unit (2 %% of its diameter)",
+    )
+    hand.add_argument(
+        "--sigma-min-of-hand",
+        type=not_negative,
+        metavar="S",
+        help="how far the hand can close, in the object's unit (0)",
+    )
+    hand.add_argument(
+        "--sigma-max-of-hand",
+        type=positive,
+        metavar="S",
+        help="how far it can open: the grasp needs less, and cages count up to there (no limit)",
+    )
+    hand.add_argument(
+        "--avoid",
+        type=number,
+        nargs=4,
+        action="append",
+        default=[],
+        metavar=("X0", "Y0", "X1", "Y1"),
+        help="a box that no finger of the grasp may reach into; may be given several times",
+    )
+    hand.add_argument(
+        "--tolerance",
+        type=not_negative,
+        metavar="T",
+        help="how wrong the drawing may be, in its unit: smaller or shallower grasps are left out "
+        "(0)",
+    )
+    parser.add_argument(
+        "--seconds",
+        type=positive,
+        metavar="S",
+        help="stop the search after S seconds with what there is (Ctrl-C does so too)",
+    )
+    parser.add_argument(
+        "--figure", metavar="FILE", type=file_name, help="draw all grasps listed into FILE (.svg)"
+    )
     parser.add_argument(
         "--seed",
         type=seed_option,
@@ -135,12 +189,16 @@ def run(args: argparse.Namespace) -> int:
             raise InputError(f"--json {args.json!r} is the name of a case in --cases {args.cases}")
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
+    check_output("--figure", args.figure, *case.sources)
+    if args.figure is not None and Path(args.figure).suffix.lower() != ".svg":
+        raise InputError(f"--figure {args.figure!r}: a name ending in .svg is needed")
     if args.phi is not None and args.within is None:
+        _refuse_limits(args)
         planned = _of_one_hand(case, radius, args.phi, args.aim)
     else:
         planned = _best(case, args)
     cages = planned.cages[: args.top]
-    _tell(planned)
+    _tell(planned, args)
     document = {
         "format": "icage-grasps/1",
         "name": case.name,
@@ -148,20 +206,71 @@ def run(args: argparse.Namespace) -> int:
         "outline": {"vertices": case.outline.vertices},
         "finger_radius": radius,
         "aim": args.aim,
-        "grasps": [_entry(cage, args.aim) for cage in cages],
+        "grasps": [
+            {**_entry(cage, args.aim), "alike": alike}
+            for cage, alike in zip(cages, planned.alike, strict=False)
+        ],
         "failed": [{"contacts": f.contacts, "why": f.why} for f in planned.failures],
         "triples_left_out": planned.triples_left_out,
         "searches_broken_off": planned.searches_broken_off,
+        "ended": planned.ended,
     }
+    if args.figure is not None:
+        _draw(cages, args)
     if args.cases is not None:
         _write_cases(case, cages, args)
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
-        _print(case, radius, cages, args.aim)
+        _print(case, planned, args)
+        if args.figure is not None:
+            print(f"drawn in {args.figure}")
         if args.cases is not None and cages:
             print(f"cases in {args.cases}: 1.json to {len(cages)}.json")
     return 0
+
+
+_WRITTEN = (
+    ("within", None), ("aim", "first"), ("corners", 0), ("seed", 0), ("least-angle", None),
+    ("least-gap", None), ("sigma-min-of-hand", None), ("sigma-max-of-hand", None),
+    ("tolerance", None),
+)  # fmt: skip
+"""Options and their defaults that say again which grasps were found."""
+
+_LIMITS = (
+    "least_angle", "least_gap", "sigma_min_of_hand", "sigma_max_of_hand", "tolerance", "seconds",
+)  # fmt: skip
+
+
+def _refuse_limits(args: argparse.Namespace) -> None:
+    """All grasps of one hand are listed: limits would be asked of nothing."""
+    from icage.errors import InputError
+
+    given = [name for name in _LIMITS if getattr(args, name) is not None]
+    if args.avoid:
+        given.append("avoid")
+    if given:
+        option = given[0].replace("_", "-")
+        raise InputError(
+            f"--{option} limits a search, and --phi without --within lists all grasps of one hand; "
+            "leave one of them out"
+        )
+
+
+def _draw(cages: Sequence[Cage], args: argparse.Namespace) -> None:
+    from pathlib import Path
+
+    from icage.formats.contact_sheet import contact_sheet
+    from icage.formats.whole_files import whole_file
+    from icage.grasps.planned import score
+
+    captions = [
+        f"{k}: score {score(cage, args.aim):.4f}, phi {cage.hand.phi_deg[0]:.1f}, "
+        f"{cage.hand.phi_deg[1]:.1f}"
+        for k, cage in enumerate(cages, 1)
+    ]
+    with whole_file(Path(args.figure)) as part:
+        part.write_text(contact_sheet(cages, captions), encoding="utf-8")
 
 
 def _write_cases(case: Case, cages: tuple[Cage, ...], args: argparse.Namespace) -> None:
@@ -176,9 +285,11 @@ def _write_cases(case: Case, cages: tuple[Cage, ...], args: argparse.Namespace) 
     command = search_command(case, args, args.object)
     if args.phi is not None:
         command += f" --phi {args.phi[0]!r} {args.phi[1]!r}"
-    for option, default in (("within", None), ("aim", "first"), ("corners", 0), ("seed", 0)):
-        if getattr(args, option) != default:
-            command += f" --{option} {shlex.quote(str(getattr(args, option)))}"
+    for option, default in _WRITTEN:
+        if (value := getattr(args, option.replace("-", "_"))) != default:
+            command += f" --{option} {shlex.quote(str(value))}"
+    for box in args.avoid:
+        command += " --avoid " + " ".join(map(repr, box))
     folder = Path(args.cases)
     found = Chosen(cases_from(case, cages), command)
     names = {LISTED.format(k) for k in range(1, len(cages) + 1)}
@@ -190,24 +301,37 @@ def _write_cases(case: Case, cages: tuple[Cage, ...], args: argparse.Namespace) 
 def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
     """The best grasps of any hand."""
     import os
-    from math import radians
 
     import numpy as np
 
     from experiments.cases.chosen import WORKERS
-    from experiments.io.progress import stage_bar
+    from experiments.io.progress import search_bar
     from icage.grasps.of_case import best_of_case
-    from icage.grasps.wanted import Wanted
+
+    wanted, rng = wanted_of(args), np.random.default_rng(args.seed)
+    workers = min(WORKERS, os.cpu_count() or 1)
+    with search_bar() as progress:
+        return best_of_case(case, args.top, wanted, rng, workers, progress, args.seconds)
+
+
+def wanted_of(args: argparse.Namespace) -> Wanted:
+    """What the options ask for."""
+    from math import inf, radians
+
+    from icage.grasps.wanted import LEAST_ANGLE, HandLimits, Wanted, as_boxes
     from icage.hand import HandShape
 
     near = None
     if args.phi is not None:
         HandShape.from_angles_deg(*args.phi)  # says what is wrong with the angles
         near = (radians(args.phi[0]), radians(args.phi[1]), radians(args.within))
-    wanted, rng = Wanted(args.aim, args.corners, near), np.random.default_rng(args.seed)
-    workers = min(WORKERS, os.cpu_count() or 1)
-    with stage_bar() as progress:
-        return best_of_case(case, args.top, wanted, rng, workers, progress)
+    limits = HandLimits(
+        least_angle=LEAST_ANGLE if args.least_angle is None else radians(args.least_angle),
+        least_gap=args.least_gap,
+        sigma_least=args.sigma_min_of_hand or 0.0,
+        sigma_most=inf if args.sigma_max_of_hand is None else args.sigma_max_of_hand,
+    )
+    return Wanted(args.aim, args.corners, near, limits, as_boxes(args.avoid), args.tolerance or 0.0)
 
 
 def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
@@ -222,11 +346,14 @@ def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> Plann
     return planned_grasps_of_hand(case.outline, radius, hand, found, aim)
 
 
-def _tell(planned: PlannedGrasps) -> None:
+def _tell(planned: PlannedGrasps, args: argparse.Namespace) -> None:
     """What was not looked at or came to nothing, on standard error."""
     import sys
 
     lines: list[str] = []
+    if planned.ended is not None:
+        after = f" after {args.seconds:g} s" if planned.ended == "out of time" else ""
+        lines.append(f"the search was {planned.ended}{after}: the best of what it had")
     if planned.triples_left_out:
         lines.append(f"{planned.triples_left_out} triples of contacts were not drawn, at random")
     if planned.searches_broken_off:
@@ -250,30 +377,65 @@ def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         "score": score(cage, aim),
+        "free_gap": _free_gap(cage),
         "verdict": cage.status,
         "free_fingers": cage.grasps[0].free_fingers,
         "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
     }
 
 
-def _print(case: Case, radius: float, cages: Sequence[Cage], aim: Aim) -> None:
+def _print(case: Case, planned: PlannedGrasps, args: argparse.Namespace) -> None:
     from experiments.cases.asked import size_words
     from icage.grasps.planned import score
 
+    aim, radius = args.aim, case.finger_radius
+    cages = planned.cages[: args.top]
     print(
         f"{case.name}: {len(case.outline)} vertices, {_fingers(radius, case.unit)}, "
         f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
     )
     print(f"size {size_words(case)}")
-    print(f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10}  phi [deg]         contacts")
-    for cage in cages:
+    if args.phi is None or args.within is not None:
+        print(f"hands {_limit_words(case, args)}")
+    print(
+        f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10} {'free gap':>9} {'alike':>5}  "
+        f"{'phi [deg]':<17} contacts"
+    )
+    for cage, alike in zip(cages, planned.alike, strict=False):
         first = _ratio(cage.sigma_first, cage.sigma_0)
         top = _ratio(cage.sigma_max, cage.sigma_0)
         phi = "({:.2f}, {:.2f})".format(*cage.hand.phi_deg)
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
         print(
-            f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g}  {phi:<17} {points}"
+            f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g} "
+            f"{_free_gap(cage):9.4g} {alike:5d}  {phi:<17} {points}"
         )
+
+
+def _limit_words(case: Case, args: argparse.Namespace) -> str:
+    """Which hands were looked at, and how to ask for others."""
+    from math import degrees
+
+    from icage.grasps.wanted import LEAST_ANGLE, LEAST_GAP
+
+    unit = f" {case.unit}"
+    gap = LEAST_GAP * case.outline.diameter if args.least_gap is None else args.least_gap
+    words = [f"with a free gap of {gap:.4g}{unit} and more between fingers (--least-gap)"]
+    if args.phi is None:
+        angle = degrees(LEAST_ANGLE) if args.least_angle is None else args.least_angle
+        words.insert(0, f"with angles of {angle:g} degrees and more (--least-angle)")
+    if args.sigma_min_of_hand is not None:
+        words.append(f"that close to {args.sigma_min_of_hand:g}{unit}")
+    if args.sigma_max_of_hand is not None:
+        words.append(f"that open to {args.sigma_max_of_hand:g}{unit}")
+    if args.avoid:
+        words.append(f"outside {len(args.avoid)} box{'es' if len(args.avoid) > 1 else ''}")
+    return ", ".join(words)
+
+
+def _free_gap(cage: Cage) -> float:
+    """Least free gap between two fingers in the grasp, [unit]."""
+    return cage.hand.least_gap([complex(cage.sigma_0)]) - 2.0 * cage.finger_radius
 
 
 def _fingers(radius: float, unit: str) -> str:

@@ -64,6 +64,18 @@ def cage_picture(cage: Cage, width: float = WIDTH) -> str:
     return sheet.svg(body, list(_caption(cage)))
 
 
+def grasp_picture(cage: Cage, caption: str, width: float = WIDTH) -> str:
+    """The object, the target hand and, dashed, the hand of the escape; no regions, so at once."""
+    hands = [cage.contacts, *(p.contacts for p in cage.punctures if p.kind == "escape")]
+    boxes = [box for hand in hands for box in _discs_box(hand, cage.finger_radius)]
+    sheet = _Sheet(_bounds([cage.outline.vertices, *boxes]), width)
+    body = list(_object(sheet, cage.outline.polygon))
+    for hand in hands[1:]:
+        body += _hand(sheet, hand, cage.finger_radius, OUT, solid=False)
+    body += _hand(sheet, cage.contacts, cage.finger_radius, HAND, solid=True)
+    return sheet.svg(body, [caption])
+
+
 def way_out_picture(cage: Cage, width: float = WIDTH) -> str:
     """The object, the fingers' ways along the escape path, the hand at sigma_max and once free."""
     path, free = cage.escape_path, cage.escape_free_at

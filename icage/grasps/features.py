@@ -45,7 +45,7 @@ class Features(NamedTuple):
     """Contact features as arrays; ``planes`` (n, 2, 3) are a x + b y >= c for P."""
 
     kind: IntArray
-    index: IntArray
+    number: IntArray
     point: FloatArray
     normal: FloatArray
     planes: FloatArray
@@ -74,7 +74,7 @@ _NEIGHBOURS = (1, -1, 2, -2, 3, -3)
 
 def neighbours(features: Features) -> IntArray:
     """(n, k) features that follow or precede each along the outline, nearest first."""
-    place = features.index + np.where(features.kind == EDGE, 0.5, 0.0)
+    place = features.number + np.where(features.kind == EDGE, 0.5, 0.0)
     order = np.argsort(place, kind="stable")
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
@@ -122,7 +122,7 @@ def features_of(
     middle = (low + high) / np.maximum(np.hypot(*(low + high).T), _NO_SUM)[:, None]
     return Features(
         kind=np.repeat([EDGE, VERTEX, VERTEX], [len(edges), len(concave), len(concave)]),
-        index=np.concatenate([edges, concave, concave]),
+        number=np.concatenate([edges, concave, concave]),
         point=np.concatenate([a[edges], a[concave], a[concave]]),
         normal=np.concatenate([inward[edges], middle, middle]),
         planes=np.concatenate([strips[edges], cones, -cones]),
@@ -147,7 +147,7 @@ def _are_chords(
         short = radius - np.hypot(gap[..., 0], gap[..., 1])
         return (short >= -off) & (short <= sagitta + off)
 
-    return (on(a) & on(b)).any(axis=1)
+    return np.asarray((on(a) & on(b)).any(axis=1), dtype=np.bool_)
 
 
 def balanced_triples(
@@ -170,7 +170,7 @@ def balanced_triples(
 def further_points(
     features: Features, outline: Outline, limits: HandLimits, triple: IntArray
 ) -> tuple[IntArray, FloatArray]:
-    """Points of concurrency (n, 2) spread over the whole set of a triple, with a triple (n, 3) each.
+    """Points of concurrency (n, 2) all over the set of a triple, and a triple (n, 3) for each.
 
     Its features are in counterclockwise order of their contacts, which depends on the point.
     """

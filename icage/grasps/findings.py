@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.grasps.wanted import Candidate
+from icage.outline import Outline
 
 _ALIKE = 0.08
 """[diameter] Grasps whose contacts differ by less than this (root mean square) are one idea."""
@@ -95,15 +97,23 @@ def apart(contacts: FloatArray, others: FloatArray) -> FloatArray:
     return np.sqrt((gap**2).sum(axis=3).mean(axis=2)).min(axis=1)
 
 
-def groups(contacts: FloatArray, diameter: float, most: int) -> list[IntArray]:
-    """Rows of grasps (n, 3, 2), best first, that are one idea each: the first ``most`` groups.
+def same_idea(outline: Outline, a: FloatArray, b: FloatArray) -> bool:
+    """Whether two grasps (3, 2) differ by less than ``_ALIKE``."""
+    return bool(apart(a, b[None])[0] < _ALIKE * outline.diameter)
 
-    The first row of a group is its best; the others differ from it by less than ``_ALIKE``.
+
+def ideas(contacts: FloatArray, diameter: float) -> Iterator[IntArray]:
+    """Rows of grasps (n, 3, 2), best first, that are one idea each; the best idea comes first.
+
+    The first row of an idea is its best; the others differ from it by less than ``_ALIKE``.
     """
     left = np.arange(len(contacts))
-    found: list[IntArray] = []
-    while len(left) and len(found) < most:
+    while len(left):
         alike = apart(contacts[left[0]], contacts[left]) < _ALIKE * diameter
-        found.append(left[alike])
+        yield left[alike]
         left = left[~alike]
-    return found
+
+
+def groups(contacts: FloatArray, diameter: float, most: int) -> list[IntArray]:
+    """The first ``most`` ideas."""
+    return list(islice(ideas(contacts, diameter), most))

@@ -9,10 +9,10 @@ import numpy as np
 from icage.case import Case
 from icage.errors import InputError
 from icage.grasp import Grasp
+from icage.grasps.crew import Progress
 from icage.grasps.planned import PlannedGrasps, planned_grasps, score
 from icage.grasps.search import ranked_grasps
 from icage.grasps.wanted import Aim, Wanted
-from icage.grasps.workers import Progress
 
 
 def best_of_case(
@@ -22,8 +22,11 @@ def best_of_case(
     rng: np.random.Generator,
     workers: int = 1,
     progress: Progress | None = None,
+    seconds: float | None = None,
 ) -> PlannedGrasps:
     """Up to ``top`` cages of the best grasps, and what came to nothing or was not looked at.
+
+    ``seconds`` bounds the search; the best of it are planned after that.
 
     Raises
     ------
@@ -37,15 +40,17 @@ def best_of_case(
     radius = case.finger_radius
     reporting = {} if progress is None else {"progress": progress}
     found = ranked_grasps(
-        case.outline, finger_radius=radius, wanted=wanted, rng=rng, workers=workers, **reporting
-    )
+        case.outline, finger_radius=radius, wanted=wanted, rng=rng, workers=workers,
+        seconds=seconds, **reporting,
+    )  # fmt: skip
     contacts = (candidate.contacts for candidate in found.candidates)
     planned = planned_grasps(case.outline, radius, contacts, wanted.aim, top)
     return replace(
         planned,
         triples_left_out=found.triples_left_out,
         searches_broken_off=found.broken_off,
-        compared=len(found.candidates),
+        compared=found.compared,
+        ended=found.ended,
     )
 
 

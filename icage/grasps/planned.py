@@ -10,18 +10,21 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.discs.true_curve import grasp_on_curve
 from icage.errors import GeometryError, GraspError, HandError
-from icage.grasps.search import same_place
+from icage.grasps.findings import ideas, same_idea
+from icage.grasps.search import Ended
 from icage.grasps.wanted import Aim
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
 
 _TRIES_AT_A_PLACE = 4
-"""Candidates near each other that are tried before the place is given up."""
+"""Candidates of one idea that are tried before it is given up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,10 @@ class PlannedGrasps:
 
     cages: tuple[Cage, ...]
     failures: tuple[Failure, ...]
+    alike: tuple[int, ...] = ()
+    """How many more candidates are the same idea as each cage."""
+    ended: Ended | None = None
+    """What ended the search before its own end, if anything."""
     triples_left_out: int = 0
     """Triples of contacts that the search did not draw, at random."""
     searches_broken_off: int = 0
@@ -62,34 +69,30 @@ def score(cage: Cage, aim: Aim) -> float:
 def planned_grasps(
     outline: Outline, radius: float, candidates: Iterable[FloatArray], aim: Aim, top: int
 ) -> PlannedGrasps:
-    """The first ``top`` candidates, (3, 2) contacts best first, that are cages at different places.
+    """The first ``top`` candidates, (3, 2) contacts best first, that are cages of different ideas.
 
-    A candidate near one that failed is tried as well, ``_TRIES_AT_A_PLACE`` times at most.
+    A candidate that fails gives its place to others like it, ``_TRIES_AT_A_PLACE`` at most.
     """
+    contacts = np.array(list(candidates), dtype=np.float64).reshape(-1, 3, 2)
     cages: list[Cage] = []
+    alike: list[int] = []
     failures: list[Failure] = []
-    tries: list[int] = []
-    for contacts in candidates:
+    for group in ideas(contacts, outline.diameter):
         if len(cages) == top:
             break
-        if any(same_place(outline, contacts, cage.contacts) for cage in cages):
-            continue
-        known = (k for k, f in enumerate(failures) if same_place(outline, contacts, f.contacts))
-        at = next(known, None)
-        if at is not None and tries[at] >= _TRIES_AT_A_PLACE:
-            continue
-        cage = _planned(outline, radius, contacts)
-        if isinstance(cage, Cage):
-            if not any(same_place(outline, cage.contacts, other.contacts) for other in cages):
-                cages.append(cage)
-            if at is not None:  # a neighbour has taken its place
-                del failures[at], tries[at]
-        elif at is None:
-            failures.append(Failure(contacts, cage))
-            tries.append(1)
+        why = ""
+        for row in group[:_TRIES_AT_A_PLACE]:
+            cage = _planned(outline, radius, contacts[row])
+            if isinstance(cage, Cage):
+                # a grasp of discs moves a little when it is solved on the true curve
+                if not any(same_idea(outline, cage.contacts, other.contacts) for other in cages):
+                    cages.append(cage)
+                    alike.append(len(group) - 1)
+                break
+            why = why or cage
         else:
-            tries[at] += 1
-    return _ordered(cages, failures, aim)
+            failures.append(Failure(contacts[group[0]], why))
+    return _ordered(cages, alike, failures, aim)
 
 
 def planned_grasps_of_hand(
@@ -99,11 +102,16 @@ def planned_grasps_of_hand(
     answers = [(contacts, _planned(outline, radius, contacts, hand)) for contacts in candidates]
     cages = [cage for _, cage in answers if isinstance(cage, Cage)]
     failures = [Failure(contacts, why) for contacts, why in answers if isinstance(why, str)]
-    return _ordered(cages, failures, aim)
+    return _ordered(cages, [0] * len(cages), failures, aim)
 
 
-def _ordered(cages: list[Cage], failures: list[Failure], aim: Aim) -> PlannedGrasps:
-    return PlannedGrasps(tuple(sorted(cages, key=lambda cage: -score(cage, aim))), tuple(failures))
+def _ordered(
+    cages: list[Cage], alike: list[int], failures: list[Failure], aim: Aim
+) -> PlannedGrasps:
+    order = sorted(range(len(cages)), key=lambda k: -score(cages[k], aim))
+    return PlannedGrasps(
+        tuple(cages[k] for k in order), tuple(failures), tuple(alike[k] for k in order)
+    )
 
 
 def _planned(

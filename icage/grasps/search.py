@@ -19,8 +19,8 @@ from icage.errors import GraspError, InputError
 from icage.geometry.near_frame import NearFrame
 from icage.grasps.crew import Crew, OutOfTimeError, Progress
 from icage.grasps.evaluator import SEGMENTS, GraspEvaluator
-from icage.grasps.findings import Findings, groups
 from icage.grasps.features import neighbours
+from icage.grasps.findings import Findings, groups
 from icage.grasps.wanted import Candidate, Wanted
 from icage.outline import Outline
 
@@ -49,6 +49,10 @@ _BESIDE = 2
 _IMPROVED = ((64, 0.03, 40), (24, 0.01, 40), (12, 0.003, 40), (8, 0.001, 40), (6, 0.0002, 40))
 """Grasps that are improved, by simplexes of which size [diameter], with how many candidates: those
 that come furthest go on."""
+
+_BEST_IDEAS = 3
+_MEMBERS = 10
+_RIDGES = ((30, 0.03, 40), (6, 0.003, 40), (4, 0.0003, 40))
 
 _AGAIN = 240
 """Grasps of discs, found between coarse chords, that are compared between finer ones."""
@@ -133,25 +137,15 @@ def ranked_grasps(
             ended = "interrupted"
     best = search.best_first()
     if not len(best):
-        when = "" if ended is None else f" before the search was {_WORDS[ended]}"
+        when = "" if ended is None else f" (the search was {ended})"
         raise GraspError(
-            f"no immobilizing three-finger grasp was found on this outline{when}{_within(wanted)}"
+            f"no immobilizing three-finger grasp was found on this outline{when}, within the "
+            "limits of the hand and of where it may touch; wider limits may let some in"
         )
     return Ranking(
         tuple(replace(c, contacts=frame.back(c.contacts)) for c in best.candidates()),
         search.triples, search.left_out, search.broken_off, crew.compared, ended,
     )  # fmt: skip
-
-
-_WORDS = {"out of time": "out of time", "interrupted": "interrupted"}
-
-
-def _within(wanted: Wanted) -> str:
-    """Which limits may have been too narrow."""
-    return (
-        " within the limits of the hand (least angle, least gap, smallest and largest sigma, places "
-        "to avoid, corners): widen them to see more"
-    )
 
 
 def _boxes_into(frame: NearFrame, wanted: Wanted) -> tuple[tuple[float, float, float, float], ...]:
@@ -197,6 +191,13 @@ class _Search:
         self._promising(evaluator, crew)
         starts = self._starts(_IMPROVED[0][0])
         self._improve(evaluator, crew, starts, _IMPROVED, "improving", self.found)
+        # the best ideas have several ridges: their other members start on these
+        best = Findings.together(self.found).best_first()
+        ideas = groups(best.contacts, self.outline.diameter, _BEST_IDEAS)
+        # the first of them have climbed to one place: take them from all over the better half
+        rows = [k for g in ideas for k in g[1 : 1 + len(g) // 2 : 1 + len(g) // (2 * _MEMBERS)]]
+        again = best.of(np.array(rows, np.int64))
+        self._improve(evaluator, crew, again, _RIDGES, "other ridges", self.found)
         if self.radius > 0.0:
             self._between_finer_chords(crew)
 

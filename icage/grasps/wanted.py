@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal, TypeAlias
 
@@ -121,6 +122,32 @@ class Wanted:
                 a_number(value, "avoid")
             if box[0] > box[2] or box[1] > box[3]:
                 raise InputError(f"avoid = {box}; x_low <= x_high and y_low <= y_high are needed")
+
+
+def as_boxes(avoid: Sequence[Sequence[float]]) -> tuple[Box, ...]:
+    """Boxes of four numbers each.
+
+    Raises
+    ------
+    InputError:
+        One of them is something else.
+
+    >>> as_boxes([[0, 0, 2, 1]])
+    ((0.0, 0.0, 2.0, 1.0),)
+    """
+    found: list[Box] = []
+    for box in avoid:
+        try:
+            numbers = [a_number(value, "avoid") for value in box]
+        except TypeError as error:
+            raise InputError(f"avoid holds {box!r}; boxes of four numbers are needed") from error
+        if len(numbers) != _SIDES:
+            raise InputError(f"avoid holds a box of {len(numbers)} numbers; four are needed")
+        found.append((numbers[0], numbers[1], numbers[2], numbers[3]))
+    return tuple(found)
+
+
+_SIDES: Final = 4
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from icage.contact_space.sectors import concurrency_point, sector_at
 from icage.contact_space.third_finger import turn
 from icage.geometry.statics import free_fingers
 from icage.grasps.features import EDGE, balanced_triples, features_of
+from icage.grasps.kernels.hands import HandLimits
 
 Shown = tuple[str, FloatArray, tuple[int, ...]]
 """Words, contacts (3, 2) on the polygon of the search, free fingers (0..2)."""
@@ -166,7 +167,7 @@ def _of_another_hand(study: Study, edges: int) -> FloatArray | None:
     """The grasp with so many edges whose contacts are best away from vertices and each other."""
     longest = 0.02 * study.polygon.diameter
     features = features_of(study.polygon, longer_than=longest)
-    triples, points = balanced_triples(features, study.polygon, longest)
+    triples, points = balanced_triples(features, study.polygon, HandLimits.apart(longest))
     best, found = 0.0, None
     for triple, p in zip(triples, points, strict=True):
         if int((features.kind[triple] == EDGE).sum()) != edges:

@@ -37,6 +37,11 @@ class HandLimits(NamedTuple):
     phi_2: float
     within: float
 
+    @classmethod
+    def apart(cls, least_distance: float, widest: float = math.inf) -> HandLimits:
+        """Any hand whose fingers are so far apart."""
+        return cls(least_distance, 0.0, widest, 0.0, math.inf, 0.0, 0.0, math.inf)
+
 
 _FLATTEST = 0.05
 """[1] Least height over longest side of any hand that is searched."""

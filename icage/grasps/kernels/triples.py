@@ -190,8 +190,8 @@ def points_of_triple(kind, point, normal, planes, middle, reach, near, step, lim
     """Points of concurrency spread over all that a triple has: (n, 2), and (n,) orientations.
 
     Those that balance and squeeze and give a hand within the limits: ``step`` apart within ``near``
-    of the middle, a few beyond, up to ``reach``. Orientation 1: the contacts are counterclockwise in the
-    order of the triple; -1: clockwise.
+    of the middle, a few beyond, up to ``reach``. Orientation 1: the contacts are counterclockwise
+    in the order of the triple; -1: clockwise.
     """
     qx = np.empty(_CORNERS)
     qy = np.empty(_CORNERS)

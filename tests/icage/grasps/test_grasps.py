@@ -370,8 +370,8 @@ def test_too_many_pieces_are_refused() -> None:
 def test_features_are_the_edges_and_the_concave_vertices(family: str, seed: int) -> None:
     ring = Ring.of(FAMILIES[family](np.random.default_rng(seed)))
     found_features = features_of(Outline(ring.vertices))
-    edges = found_features.index[found_features.kind == EDGE]
-    corners = found_features.index[found_features.kind == VERTEX]
+    edges = found_features.number[found_features.kind == EDGE]
+    corners = found_features.number[found_features.kind == VERTEX]
     assert edges.tolist() == list(range(len(ring)))
     assert sorted(corners.tolist()) == sorted([*np.flatnonzero(ring.concave)] * 2)
 
@@ -391,10 +391,10 @@ def test_a_point_is_allowed_where_the_features_can_push_through_it(family: str, 
             one = np.array([k, k, k])
             if features.allows(one, p):
                 kind = "edge" if features.kind[k] == EDGE else "vertex"
-                told.add((kind, int(features.index[k])))
+                told.add((kind, int(features.number[k])))
                 at = features.contacts(one, p)[0]
                 assert at == pytest.approx(
-                    spots.get((kind, int(features.index[k])), at), abs=1e-9 * ring.diameter
+                    spots.get((kind, int(features.number[k])), at), abs=1e-9 * ring.diameter
                 )
         assert told == wanted
 
@@ -440,7 +440,7 @@ def test_every_triple_that_squeezes_somewhere_is_proposed(family: str, seed: int
     triples, _ = balanced_triples(features, outline, APART * outline.diameter)
     names = [
         frozenset(
-            ("edge" if features.kind[k] == EDGE else "vertex", int(features.index[k]))
+            ("edge" if features.kind[k] == EDGE else "vertex", int(features.number[k]))
             for k in triple
         )
         for triple in triples
