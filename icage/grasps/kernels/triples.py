@@ -70,7 +70,7 @@ def contact_at(kind, point, normal, px, py):
     along = normal[0] * dx + normal[1] * dy
     if kind == EDGE:  # the foot of P
         return ContactPoint(px - along * normal[0], py - along * normal[1], normal[0], normal[1])
-    size = max(math.hypot(dx, dy), _NOTHING)
+    size = max(np.hypot(dx, dy), _NOTHING)
     side = 1.0 if along > 0.0 else -1.0
     return ContactPoint(point[0], point[1], side * dx / size, side * dy / size)
 
@@ -144,9 +144,9 @@ def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, f
                 return 0.0  # in a set of no width, by rounding
     area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
     near = min(
-        math.hypot(x[1] - x[0], y[1] - y[0]),
-        math.hypot(x[2] - x[1], y[2] - y[1]),
-        math.hypot(x[0] - x[2], y[0] - y[2]),
+        np.hypot(x[1] - x[0], y[1] - y[0]),
+        np.hypot(x[2] - x[1], y[2] - y[1]),
+        np.hypot(x[0] - x[2], y[0] - y[2]),
     )
     if near < apart or abs(area) < _NO_TRIANGLE * near * near:
         return 0.0
@@ -156,9 +156,9 @@ def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, apart, x, y, f
 @compiled
 def _is_fair(x, y, area, widest, flattest):
     """Whether the hand on the contacts is neither too long nor too flat, ratios of its sides."""
-    one = math.hypot(x[1] - x[0], y[1] - y[0])
-    two = math.hypot(x[2] - x[1], y[2] - y[1])
-    three = math.hypot(x[0] - x[2], y[0] - y[2])
+    one = np.hypot(x[1] - x[0], y[1] - y[0])
+    two = np.hypot(x[2] - x[1], y[2] - y[1])
+    three = np.hypot(x[0] - x[2], y[0] - y[2])
     longest = max(one, two, three)
     return longest <= widest * min(one, two, three) and abs(area) >= flattest * longest * longest
 
@@ -176,7 +176,7 @@ def _spread(qx, qy, n, step):
     for k in range(n):
         h = k + 1 if k + 1 < n else 0
         ux, uy, vx, vy = qx[k] - cx, qy[k] - cy, qx[h] - cx, qy[h] - cy
-        size = max(math.hypot(ux, uy), math.hypot(vx, vy))
+        size = max(np.hypot(ux, uy), np.hypot(vx, vy))
         parts = min(_PARTS, max(3, int(math.ceil(size / step))))
         for i in range(parts):
             for j in range(parts - i):
