@@ -8,7 +8,6 @@ from multiprocessing import get_context
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
 from icage.grasps.evaluator import Found, GraspEvaluator, Job, best_first
@@ -64,6 +63,8 @@ def improve_chunk(jobs: list[Job]) -> Done:
 
 def improved(evaluator: GraspEvaluator, triple: IntArray, start: FloatArray) -> Found:
     """Move the contacts of a grasp by moving P: Nelder-Mead on the score, bounded steps."""
+    from scipy.optimize import minimize  # only now: scipy is slow to load
+
     best: list[Found] = [(evaluator.at(triple, start), start)]
     size = evaluator.outline.diameter
 
