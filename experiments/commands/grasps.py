@@ -135,6 +135,9 @@ def run(args: argparse.Namespace) -> int:
             raise InputError(f"--json {args.json!r} is the name of a case in --cases {args.cases}")
     if args.within is not None and args.phi is None:
         raise InputError("--within needs --phi")
+    from icage.kernels.compiled import long_job
+
+    long_job()
     if args.phi is not None and args.within is None:
         planned = _of_one_hand(case, radius, args.phi, args.aim)
     else:
