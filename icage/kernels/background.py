@@ -9,6 +9,7 @@ starts none. [docs/decisions/0009-cold-start.md]
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import sys
@@ -86,6 +87,13 @@ def start(*, awaited: bool = False) -> None:
     except OSError:  # no room for another process: this one compiles
         return
     _seen.at_work = True
+    atexit.register(_leave, _seen.child)
+
+
+def _leave(child: subprocess.Popen[bytes]) -> None:
+    """It is meant to outlive us, of which Python would warn."""
+    if child.returncode is None:
+        child.returncode = 0
 
 
 def is_ready(name: str) -> bool:
