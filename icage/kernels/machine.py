@@ -25,7 +25,7 @@ TOOLS: Final = f"numba{numba.__version__}-llvmlite{llvmlite.__version__}"
 """What makes the machine code."""
 
 _INNER: Final = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""What only other kernels call needs no way in from Python: a sixth of all compiling."""
+"""What only other kernels call needs no way in from Python, which would be compiled with it."""
 
 _dispatchers: list[Any] = []
 """All kernels of this process that have met numba."""
