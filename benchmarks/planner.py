@@ -23,6 +23,7 @@ from icage.cells.regions import caging_regions
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.wanted import Wanted
+from icage.kernels.compiled import machine_code_at_once
 from icage.outline import Outline
 from icage.planner import plan
 
@@ -118,6 +119,7 @@ def main() -> int:
     parser.add_argument("--json", type=Path, help="write the figures")
     parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
+    machine_code_at_once()
     measure()
     figures = measure()
     base = json.loads(BASELINE.read_text()) if BASELINE.exists() else figures

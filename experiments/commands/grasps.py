@@ -192,6 +192,9 @@ def run(args: argparse.Namespace) -> int:
     check_output("--figure", args.figure, *case.sources)
     if args.figure is not None and Path(args.figure).suffix.lower() != ".svg":
         raise InputError(f"--figure {args.figure!r}: a name ending in .svg is needed")
+    from icage.kernels.compiled import long_job
+
+    long_job()
     if args.phi is not None and args.within is None:
         _refuse_limits(args)
         planned = _of_one_hand(case, radius, args.phi, args.aim)

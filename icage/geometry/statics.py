@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from scipy.optimize import linprog
 
 from icage.arrays import FloatArray
 from icage.outline import Outline
@@ -33,6 +32,8 @@ def balance(outline: Outline, contacts: FloatArray, reach: float) -> float | Non
     -sum lambda_i (n_i . p_i), positive for squeezing and negative where the hand would have to
     open. The largest over all balanced forces is returned.
     """
+    from scipy.optimize import linprog  # only now: most grasps hold, and scipy is slow to load
+
     columns: list[FloatArray] = []
     work: list[float] = []
     centre = contacts.mean(axis=0)

@@ -12,7 +12,6 @@ computed again in double-double arithmetic from the same vertices.
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -158,7 +157,7 @@ def _segment_of(pieces, facet):
     py = pieces.y[facet.start]
     ex = pieces.x[facet.end] - px
     ey = pieces.y[facet.end] - py
-    length = math.hypot(ex, ey)
+    length = np.hypot(ex, ey)
     return Segment(px, py, ex / length, ey / length, length)
 
 
@@ -233,7 +232,7 @@ def pass_fast(pieces, z, facet, cap, worst, room):
 @compiled
 def _put(gx, gy, c, err, weight, cap, rows, count):
     """Store one row scaled to |g| = 1, unless it holds for every |w| <= cap or for none."""
-    norm = math.hypot(gx, gy)
+    norm = np.hypot(gx, gy)
     reach = norm * cap
     if c + err + reach < 0.0:
         return _Stored(count, FOUND)
@@ -262,7 +261,7 @@ def _careful_rows(pieces, z, facet, side, finger, piece, base, count):
         # inward normal of a counterclockwise piece: the edge turned left by a right angle
         nxh, nxl = dd.two_sum(vy[a], -vy[b])
         nyh, nyl = dd.two_sum(vx[b], -vx[a])
-        inv = 1.0 / math.hypot(nxh, nyh)
+        inv = 1.0 / np.hypot(nxh, nyh)
         nxh, nxl = dd.scale(nxh, nxl, inv)
         nyh, nyl = dd.scale(nyh, nyl, inv)
         base[count, _C_GX], base[count, _C_GX + 1] = dd.dot(uxh, uxl, uyh, uyl, nxh, nxl, nyh, nyl)
@@ -344,7 +343,7 @@ def pass_careful(pieces, z, facet, cap, give):
 
 @compiled
 def _careful_put(g, ch, cl, cap, slack, rows, count):
-    norm = math.hypot(g.x_hi, g.y_hi)
+    norm = np.hypot(g.x_hi, g.y_hi)
     if ch + norm * cap < -slack:
         return count, True
     if ch - norm * cap > slack:
@@ -373,7 +372,7 @@ def pass_value(pieces, z, facet, cap, worst, room):
             give *= 10.0
     if found.status == INFEASIBLE:
         return Pass(np.inf, 0.0, 0.0)
-    sigma = math.hypot(found.w_x, found.w_y)
+    sigma = np.hypot(found.w_x, found.w_y)
     if sigma > cap:
         return Pass(np.inf, 0.0, 0.0)
     return Pass(sigma, found.w_x, found.w_y)

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from icage.kernels.compiled import compiled
 
 _INSIDE = 1e-9
@@ -39,7 +41,7 @@ def _with_two_at_corners(pieces, z, cell, i, j, enough):
             dx = pieces.x[pieces.slot_vertex[t]] - ax
             dy = pieces.y[pieces.slot_vertex[t]] - ay
             wx, wy = (dx * ux + dy * uy) / norm, (dy * ux - dx * uy) / norm
-            sigma = math.hypot(wx, wy)
+            sigma = np.hypot(wx, wy)
             if sigma <= best:
                 continue
             if _all_held(pieces, z, cell, i, ax, ay, wx, wy, j):
@@ -84,7 +86,7 @@ def _with_two_on_edges(pieces, z, cell, i, j, k, enough):
                 if det == 0.0:
                     continue
                 wx, wy = (rb * cy - by * rc) / det, (bx * rc - rb * cx) / det
-                sigma = math.hypot(wx, wy)
+                sigma = np.hypot(wx, wy)
                 if best < sigma < math.inf and _all_held(pieces, z, cell, i, ax, ay, wx, wy, i):
                     best = sigma
                     if best >= enough:

@@ -9,7 +9,7 @@ is conservative: what it cannot decide to within ``tol`` it leaves to the search
 # pyright: basic
 from __future__ import annotations
 
-import math
+import numpy as np
 
 from icage.kernels.compiled import compiled
 
@@ -19,7 +19,7 @@ def sees(pieces, ux, uy, vx, vy, tol):
     """Whether the open segment from u to v stays outside the object (both ends are outside)."""
     sx = vx - ux
     sy = vy - uy
-    length = math.hypot(sx, sy)
+    length = np.hypot(sx, sy)
     if length <= tol:
         return True
     clear = 2.0 * tol * length
@@ -35,7 +35,7 @@ def sees(pieces, ux, uy, vx, vy, tol):
             continue
         ex = pieces.x[q] - px
         ey = pieces.y[q] - py
-        edge = math.hypot(ex, ey)
+        edge = np.hypot(ex, ey)
         # the free side of a wall is on its left
         du = (ex * (uy - py) - ey * (ux - px)) / edge
         dv = (ex * (vy - py) - ey * (vx - px)) / edge

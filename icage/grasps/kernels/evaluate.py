@@ -7,7 +7,6 @@ as soon as its level is known: at sigma_first where that is ranked, else at sigm
 # pyright: basic
 from __future__ import annotations
 
-import math
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -135,7 +134,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     z = np.zeros((3, 2))
     z[1, 0] = 1.0
     z[2, 0], z[2, 1] = (ux * wx + uy * wy) / norm, (uy * wx - ux * wy) / norm
-    shortest = min(1.0, math.hypot(z[2, 0], z[2, 1]), math.hypot(z[2, 0] - 1.0, z[2, 1]))
+    shortest = min(1.0, np.hypot(z[2, 0], z[2, 1]), np.hypot(z[2, 0] - 1.0, z[2, 1]))
     cap = pieces.diameter / shortest
     worst = 1e-12 * pieces.diameter
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
@@ -154,7 +153,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     for k in range(3):
         x[k], y[k] = own[k, 0] + origin[0], own[k, 1] + origin[1]
     sigma_0 = near[NEAR_SIGMA]
-    longer = math.hypot(x[(first + 1) % 3] - x[first], y[(first + 1) % 3] - y[first])
+    longer = np.hypot(x[(first + 1) % 3] - x[first], y[(first + 1) % 3] - y[first])
     most = limits.sigma_most * sigma_0 / longer
     enough = DEPTH_CUT * pieces.diameter if sought.first else np.inf
     found = explore(

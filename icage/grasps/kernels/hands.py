@@ -58,7 +58,7 @@ def first_finger(x, y, limits):
     angle = np.empty(3)
     for k in range(3):
         h = (k + 1) % 3
-        side[k] = math.hypot(x[h] - x[k], y[h] - y[k])
+        side[k] = np.hypot(x[h] - x[k], y[h] - y[k])
     longest = max(side[0], side[1], side[2])
     shortest = min(side[0], side[1], side[2])
     if shortest < limits.least_distance or longest > limits.widest * shortest:
@@ -99,6 +99,6 @@ def in_a_box(x, y, boxes, radius):
     for k in range(len(boxes)):
         gap_x = max(boxes[k, 0] - x, x - boxes[k, 2], 0.0)
         gap_y = max(boxes[k, 1] - y, y - boxes[k, 3], 0.0)
-        if math.hypot(gap_x, gap_y) <= radius:
+        if np.hypot(gap_x, gap_y) <= radius:
             return True
     return False
