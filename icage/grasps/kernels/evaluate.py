@@ -26,7 +26,7 @@ from icage.cells.kernels.largest import largest_sigma
 from icage.cells.kernels.minimum import MOST_CELLS, nearest_minimum
 from icage.cells.kernels.near import Hand
 from icage.cells.kernels.search import explore
-from icage.grasps.kernels.hands import first_finger, in_a_box
+from icage.grasps.kernels.hands import first_finger, touches
 from icage.kernels.compiled import compiled
 from icage.kernels.locate import depth_inside
 from icage.tolerance import (
@@ -45,7 +45,7 @@ class Verdict(IntEnum):
     """What a candidate is."""
 
     OUTSIDE = 0
-    """Its contacts are off their features, in a box to avoid, or no hand within the limits."""
+    """Its contacts are off their features, where no finger may be, or no hand within the limits."""
     NO_MINIMUM = 1
     """Nothing holds there, or a finger touches nothing."""
     NO_CAGE = 2
@@ -65,17 +65,17 @@ class Sought(NamedTuple):
     ----------
     first:
         Whether sigma_first is ranked, not sigma_max.
-    boxes:
-        (n, 4) [unit] not to be touched.
-    radius:
-        [unit] of the fingers.
+    avoided:
+        (n, 4) [unit] segments of the outline that are not to be touched.
+    reach:
+        [unit] How near a finger is that touches.
     cell_limit:
         Cells of one search.
     """
 
     first: bool
-    boxes: np.ndarray
-    radius: float
+    avoided: np.ndarray
+    reach: float
     cell_limit: int
 
 
@@ -126,7 +126,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     if first < 0:
         return OUTSIDE, 0, 0.0, 0.0
     for k in range(3):
-        if in_a_box(x[k], y[k], sought.boxes, sought.radius):
+        if touches(x[k], y[k], sought.avoided, sought.reach):
             return OUTSIDE, 0, 0.0, 0.0
     wx, wy = x[1] - x[0], y[1] - y[0]
     ux, uy = x[2] - x[0], y[2] - y[0]

@@ -7,8 +7,11 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import shapely
+import shapely.ops
 
 from icage import Case, HandLimits, InputError, Outline, plan
+from icage.errors import GraspError
 from icage.grasps import search as search_module
 from icage.grasps.crew import Crew
 from icage.grasps.evaluator import GraspEvaluator
@@ -80,25 +83,30 @@ def test_sigma_of_the_hand_is_kept_and_cages_count_up_to_its_end() -> None:
         assert grasp.level == pytest.approx(min(2.5, top), rel=1e-9)
 
 
+@pytest.mark.parametrize("stretch", [(14.0, 22.0), (20.0, 4.0)])
 @pytest.mark.parametrize("radius", [0.0, RADIUS])
-def test_no_finger_reaches_into_a_box_to_avoid(radius: float) -> None:
-    box = (0.0, 2.5, 4.0, 5.5)
-    found = ranked_grasps(KEY, finger_radius=radius, wanted=Wanted(avoid=(box,)), rng=draws())
-    assert found.candidates
-    for grasp in found.candidates:
-        x, y = grasp.contacts.T
-        gap = np.hypot(np.maximum(0.0, np.maximum(box[0] - x, x - box[2])),
-                       np.maximum(0.0, np.maximum(box[1] - y, y - box[3])))  # fmt: skip
-        assert gap.min() > radius
+def test_no_finger_touches_a_stretch_to_avoid(radius: float, stretch: tuple[float, float]) -> None:
+    wanted = Wanted(avoid=(stretch,), limits=ANY_HAND)
+    found = ranked_grasps(KEY, finger_radius=radius, wanted=wanted, rng=draws())
+    free = ranked_grasps(KEY, finger_radius=radius, wanted=Wanted(limits=ANY_HAND), rng=draws())
+    length = KEY.polygon.exterior.length
+    ring = shapely.LinearRing(KEY.vertices)
+    start, end = stretch
+    parts = [(start, end)] if start < end else [(start, length), (0.0, end)]
+    lines = [shapely.ops.substring(ring, low, high) for low, high in parts]
+    met = 0
+    for grasps, may in ((found, False), (free, True)):
+        assert grasps.candidates
+        for grasp in grasps.candidates[:300]:
+            gap = min(shapely.Point(p).distance(line) for p in grasp.contacts for line in lines)
+            met += gap <= radius + 1e-9
+            assert may or gap > radius
+    assert met > 0  # some would have
 
 
-def test_a_box_to_avoid_moves_with_an_object_far_from_the_origin() -> None:
-    far = np.array([1e4, -2e4])
-    box = (0.0, 2.5, 4.0, 5.5)
-    moved = (far[0] + box[0], far[1] + box[1], far[0] + box[2], far[1] + box[3])
-    here = ranked_grasps(KEY, wanted=Wanted(avoid=(box,)), rng=draws())
-    there = ranked_grasps(Outline(KEY.vertices + far), wanted=Wanted(avoid=(moved,)), rng=draws())
-    assert there.candidates[0].score == pytest.approx(here.candidates[0].score, rel=1e-6)
+def test_a_stretch_beyond_the_outline_is_refused() -> None:
+    with pytest.raises(InputError, match="arclengths run from 0 to"):
+        ranked_grasps(KEY, wanted=Wanted(avoid=((0.0, 1e3),)), rng=draws())
 
 
 def test_grasps_smaller_or_shallower_than_the_tolerance_never_rank() -> None:
@@ -125,7 +133,7 @@ def test_limits_that_no_hand_can_meet(wrong: dict[str, float], says: str) -> Non
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"avoid": [(0, 0, 1)]}, {"avoid": [3]}, {"avoid": [(1, 0, 0, 1)]}, {"tolerance": -1.0},
+    [{"avoid": [(0, 0, 1)]}, {"avoid": [3]}, {"avoid": [(-1, 2)]}, {"tolerance": -1.0},
      {"seconds": 0.0}, {"limits": 3}],
 )  # fmt: skip
 def test_wrong_wishes_have_one_clear_error(wrong: dict[str, object]) -> None:
@@ -173,14 +181,8 @@ def test_nothing_found_in_time_is_said() -> None:
     def interrupt(_stage: str, _done: int, _total: int, _best: float | None) -> None:
         raise KeyboardInterrupt
 
-    with pytest.raises(icage_error(), match="the search was interrupted"):
+    with pytest.raises(GraspError, match="the search was interrupted"):
         ranked_grasps(KEY, rng=draws(), progress=interrupt)
-
-
-def icage_error() -> type[Exception]:
-    from icage.errors import GraspError
-
-    return GraspError
 
 
 # ------------------------------------------------------------------ the list
