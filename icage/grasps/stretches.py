@@ -36,8 +36,8 @@ def stretch(outline: Outline, start: float, end: float) -> FloatArray:
     for value in (start, end):
         if not 0.0 <= value <= whole * (1.0 + 1e-9):
             raise InputError(
-                f"avoid from {start:g} to {end:g}: arclengths run from 0 to {whole:.6g}, the length "
-                "of the outline"
+                f"avoid from {start:g} to {end:g}: arclengths run from 0 to {whole:.6g}, the "
+                "length of the outline"
             )
     parts = [(start, end)] if start <= end else [(start, whole), (0.0, end)]
     found: list[FloatArray] = []
