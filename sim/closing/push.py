@@ -1,12 +1,12 @@
-"""While one finger pushes alone: the engine's own step, for discs on convex pieces, nothing else.
+"""Until the third finger touches: the engine's own step, for discs on convex pieces, nothing else.
 
-Until a second finger touches there is nothing to find out: one disc pushes a polygon that moves on
-a viscous table. The engine spends 5 to 8 us on each of these steps, most of it on finding what is
-near what and on a solver for any number of anything. Here the same step is written down for this
-one scene and costs a tenth: the same contacts (disc against the compiled pieces), the same
-regularization, the same metric, the same order of updates. It is the engine's map, not one of our
-own: positions agree to 1e-9 after hundreds of steps (``tests/sim/closing/test_push.py``), every
-step is counted and looked at like any other, and the engine goes on from where it ends.
+Until then one disc or two push a polygon about on a viscous table. The engine spends 5 to 8 us on
+each of these steps, most of it on finding what is near what and on a solver for any number of
+anything. Here the same step is written down for this one scene and costs a quarter: the same
+contacts (disc against the compiled pieces), the same regularization, the same metric, the same
+order of updates. It is the engine's map, not one of our own: positions agree to 1e-9 after hundreds
+of steps (``tests/sim/closing/test_push.py``), every step is counted and looked at like any other,
+and the engine goes on from where it ends: it squeezes, seats, balances and settles.
 
 One step of the integrator ``discrete``, with M and D the diagonals of masses and dampings, h the
 time step, W = M + h D, f the motor's pull, and rows J of the linkage and of the contacts:
@@ -36,9 +36,6 @@ from sim.world.engine import MjModel, mj
 from sim.world.hand_in_object import fingers_seen
 from sim.world.scene import Scene
 
-ALONE: Final = 1
-"""Fingers in touch up to which steps are computed here; with more the engine takes over."""
-
 _STIFFEST: Final = 0.9999
 """The engine's bound on an impedance. Both ends of ours are at it or above: d is constant."""
 
@@ -56,7 +53,9 @@ class _Plant(NamedTuple):
     """The compiled scene in numbers; dof 0..2 are the fingers' slides, 3..5 the object."""
 
     step: float
-    mass: FloatArray
+    lighter: FloatArray
+    metric: FloatArray
+    softer: FloatArray
     damping: FloatArray
     pull: FloatArray
     directions: FloatArray
@@ -84,6 +83,7 @@ class _Room(NamedTuple):
     right: FloatArray
     fingers: FloatArray
     force: FloatArray
+    total: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,24 +107,24 @@ class Pushed:
 def push(
     scene: Scene, positions: FloatArray, check: StepCheck, rows: BoolArray | None = None
 ) -> Pushed:
-    """Close from rest at positions (N, 6) while no more than one finger touches.
+    """Close from rest at positions (N, 6) while no more than ``computed_fingers`` touch.
 
     Steps are counted and looked at in ``check``, every ``check.stride``; what cannot be computed
     here (friction, a linkage that yields, trials outside ``rows``) is left to the engine as it is.
     """
     count = len(positions)
     found = Pushed(np.array(positions), *np.zeros((2, count, 6)), np.zeros(count))
-    if not _known(scene):
+    if not _known(scene) or not count:
         return found
     chosen = np.ones(count, dtype=np.bool_) if rows is None else rows
-    plant, room = _plant(scene), _room()
+    plant, room, most = _plant(scene), _room(), scene.config.computed_fingers
     running = np.flatnonzero(chosen & np.isfinite(positions).all(axis=1))
     running = running[check.ending[running] == RUNNING]
     state = np.stack([found.positions, found.velocities, found.accelerations], axis=1)
     ahead = np.array(state)
     while len(running):
         went = np.zeros(count, dtype=np.bool_)
-        _push(running, plant, room, ALONE, check.stride, state, ahead, found.peak_force, went)
+        _push(running, plant, room, most, check.stride, state, ahead, found.peak_force, went)
         running = running[went[running]]
         check.observe(running, state[:, 0], state[:, 1])
         running = running[check.ending[running] == RUNNING]
@@ -137,7 +137,7 @@ def _known(scene: Scene) -> bool:
     """Whether the step is the one written down here."""
     config = scene.config
     rigid = config.linkage_compliance == 0.0 and config.friction == 0.0
-    return rigid and min(config.solimp[:2]) >= _STIFFEST
+    return config.computed_fingers > 0 and rigid and min(config.solimp[:2]) >= _STIFFEST
 
 
 @njit(cache=True)
@@ -145,7 +145,7 @@ def _push(
     ids: IntArray,
     plant: _Plant,
     room: _Room,
-    alone: int,
+    most: int,
     stride: int,
     state: FloatArray,
     ahead: FloatArray,
@@ -157,21 +157,21 @@ def _push(
         ahead[i] = state[i]
         went[i] = True
         for _ in range(stride):
-            if not _step(plant, room, alone, ahead[i]):
+            if not _step(plant, room, most, ahead[i]):
                 went[i] = False
                 break
         if went[i]:
             state[i] = ahead[i]
-            peak[i] = max(peak[i], room.force.max())
+            peak[i] = max(peak[i], max(room.total[0], room.total[1], room.total[2]))
 
 
 @njit(cache=True)
 def _step(
-    plant: _Plant, room: _Room, alone: int, state: FloatArray
+    plant: _Plant, room: _Room, most: int, state: FloatArray
 ) -> bool:  # pragma: no cover - compiled
     """One step of state (3, 6) = positions, velocities, accelerations; False: not done."""
     qpos, qvel, qacc = state[0], state[1], state[2]
-    count = _rows(plant, room, alone, qpos, qvel)
+    count = _rows(plant, room, most, qpos, qvel)
     if count < 0:
         return False
     for k in range(2, count):
@@ -180,7 +180,7 @@ def _step(
         _solve(plant, room, count, qvel, qacc)
         same = True
         for k in range(2, count):
-            pressing = room.wanted[k] - room.rows[k] @ qacc
+            pressing = room.wanted[k] - _dot(room.rows, k, qacc)
             if (pressing > 0.0) != (room.force[k - 2] > 0.0):
                 same = False
             room.force[k - 2] = max(pressing, 0.0)
@@ -188,11 +188,10 @@ def _step(
             break
     else:
         return False
-    total = np.zeros(3)
+    for k in range(3):
+        room.total[k] = 0.0
     for k in range(2, count):
-        total[room.finger[k]] += room.force[k - 2] * room.weight[k]
-    room.force[:] = 0.0
-    room.force[:3] = total
+        room.total[room.finger[k]] += room.force[k - 2] * room.weight[k]
     for j in range(6):
         qvel[j] += plant.step * qacc[j]
         qpos[j] += plant.step * qvel[j]
@@ -201,20 +200,20 @@ def _step(
 
 @njit(cache=True)
 def _rows(
-    plant: _Plant, room: _Room, alone: int, qpos: FloatArray, qvel: FloatArray
+    plant: _Plant, room: _Room, most: int, qpos: FloatArray, qvel: FloatArray
 ) -> int:  # pragma: no cover - compiled
     """Rows of linkage and contacts; their number, or -1 if the engine has to go on."""
     for k in range(2):
-        room.rows[k] = plant.links[k]
+        for j in range(6):
+            room.rows[k, j] = plant.links[k, j]
         room.weight[k] = plant.link_weight[k]
-        error = plant.links[k] @ qpos
-        speed = plant.links[k] @ qvel
+        error, speed = _dot(plant.links, k, qpos), _dot(plant.links, k, qvel)
         room.wanted[k] = -plant.link_law[1] * speed - plant.link_law[0] * error
     fingers_seen(plant.directions, qpos, room.fingers)
     cos, sin = math.cos(qpos[5]), math.sin(qpos[5])
     count, touching = 2, 0
     for finger in range(3):
-        x, y = room.fingers[finger]
+        x, y = room.fingers[finger, 0], room.fingers[finger, 1]
         before = count
         for piece in range(len(plant.reach)):
             mx, my = x - plant.middle[piece, 0], y - plant.middle[piece, 1]
@@ -229,7 +228,8 @@ def _rows(
             if count == _MOST + 2:
                 return -1
             row = room.rows[count]
-            row[:] = 0.0
+            for j in range(3):
+                row[j] = 0.0
             wx, wy = cos * nx - sin * ny, sin * nx + cos * ny
             row[finger] = wx * plant.directions[finger, 0] + wy * plant.directions[finger, 1]
             row[3], row[4] = -wx, -wy
@@ -237,8 +237,8 @@ def _rows(
             soft, hard, speed = 0.0, 0.0, 0.0
             for j in range(6):
                 square = row[j] * row[j]
-                hard += square / plant.mass[j]
-                soft += square / (plant.mass[j] + plant.step * plant.damping[j])
+                hard += square * plant.lighter[j]
+                soft += square * plant.softer[j]
                 speed += row[j] * qvel[j]
             room.weight[count] = plant.stiffness * hard / (soft * plant.contact_weight[finger])
             depth = away - plant.radius
@@ -246,7 +246,7 @@ def _rows(
             room.finger[count] = finger
             count += 1
         touching += count > before
-        if touching > alone:
+        if touching > most:
             return -1
     return count
 
@@ -278,6 +278,14 @@ def _from_piece(
 
 
 @njit(cache=True)
+def _dot(rows: FloatArray, k: int, vector: FloatArray) -> float:  # pragma: no cover - compiled
+    total = 0.0
+    for j in range(6):
+        total += rows[k, j] * vector[j]
+    return total
+
+
+@njit(cache=True)
 def _solve(
     plant: _Plant, room: _Room, count: int, qvel: FloatArray, qacc: FloatArray
 ) -> None:  # pragma: no cover - compiled
@@ -286,7 +294,7 @@ def _solve(
     for i in range(6):
         for j in range(i):
             system[i, j] = 0.0
-        system[i, i] = plant.mass[i] + plant.step * plant.damping[i]
+        system[i, i] = plant.metric[i]
         right[i] = plant.pull[i] - plant.damping[i] * qvel[i]
     for k in range(count):
         if k >= 2 and room.force[k - 2] <= 0.0:
@@ -319,7 +327,7 @@ def _room() -> _Room:
     return _Room(
         np.zeros((2 + _MOST, 6)), np.zeros(2 + _MOST), np.zeros(2 + _MOST),
         np.zeros(2 + _MOST, dtype=np.int64), np.zeros((6, 6)), np.zeros(6), np.zeros((3, 2)),
-        np.zeros(_MOST),
+        np.zeros(_MOST), np.zeros(3),
     )  # fmt: skip
 
 
@@ -348,7 +356,7 @@ def _plant(scene: Scene) -> _Plant:
     middle = np.array([points[a:b].mean(axis=0) for a, b in ends])
     reach = [np.hypot(*(points[a:b] - m).T).max() for (a, b), m in zip(ends, middle, strict=True)]
     return _Plant(
-        config.time_step, mass, damping, pull, hand.directions,
+        config.time_step, 1.0 / mass, metric, 1.0 / metric, damping, pull, hand.directions,
         float(model.geom("finger_1_tip").size[0]), links, link_weight,
         _law(np.array(model.eq_solref[0]), config.time_step), contact_weight + weights[body["object"]],
         _law(np.array(config.solref), config.time_step), stiffness, points, first, middle, np.array(reach),

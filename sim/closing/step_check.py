@@ -41,6 +41,22 @@ TOUCHING = 1e-6
 """[diameter] A finger this close to the outline touches it: ten times the resolution of the
 engine's meshes, a thousandth of what a step moves."""
 
+SPAN = 5
+"""[step] Two spans in a row tell whether a speed falls exponentially."""
+
+AGREE = 0.01
+"""[1] ... if what its logarithm loses in the one and in the other differs by less than this. A
+second motion hidden under the first (a slower tail, a body that leaves an unstable balance) then
+has less than an eighth of the speed, a hundredth where it falls as fast as a contact does (10 steps
+a decade); a motion that turns back, or is held by friction, falls faster and faster or not at
+all."""
+
+_SLOW = 1e-3
+"""[diameter / s, rad / s] Faster than this nothing is called rest."""
+
+_LEAST_LOSS = 1e-3
+"""[1] A speed that loses less of its logarithm over a span does not fall."""
+
 (_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
 _FIELDS = 6
 
@@ -56,22 +72,48 @@ class _Shape(NamedTuple):
 
 
 class _Bounds(NamedTuple):
-    """When a closing has ended; ``stride`` [step] is the time between two looks."""
+    """When a closing has ended; ``stride`` [step] is the time between two looks, ``span`` [s] that
+    of ``SPAN`` steps."""
 
     pinched_sigma: float
     still_speed: float
     still_steps: int
     stride: int
+    span: float
 
 
 class _Record(NamedTuple):
-    """What is updated, a row each for N closings; ``max_steps`` (N,) is read only."""
+    """What is updated, a row each for N closings; ``max_steps``, ``remains`` (N,) are read only.
+
+    ``speeds`` (N, looks) are the last ones, ``pressed`` (N,) [step] since when all fingers touch.
+    """
 
     max_steps: IntArray
+    remains: FloatArray
+    speeds: FloatArray
+    pressed: IntArray
     seen: FloatArray
     still: IntArray
     steps: IntArray
     ending: IntArray
+
+
+@njit(cache=True)
+def _fades(
+    i: int, speed: float, bounds: _Bounds, record: _Record
+) -> bool:  # pragma: no cover - compiled
+    """Whether the speed falls exponentially and what is left of the way is short enough."""
+    if not 0.0 < speed < _SLOW or record.pressed[i] < 2 * SPAN or record.remains[i] == 0.0:
+        return False
+    looks, now = record.speeds.shape[1], record.steps[i] // bounds.stride
+    before = record.speeds[i, (now - SPAN // bounds.stride) % looks]
+    earlier = record.speeds[i, (now - 2 * SPAN // bounds.stride) % looks]
+    if not earlier > before > speed:
+        return False
+    loss, loss_before = math.log(before / speed), math.log(earlier / before)
+    if min(loss, loss_before) < _LEAST_LOSS or abs(loss - loss_before) > AGREE * loss_before:
+        return False
+    return speed * bounds.span / loss <= record.remains[i]
 
 
 @njit(cache=True)
@@ -109,13 +151,15 @@ def _observe(
         seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
+        record.pressed[i] = record.pressed[i] + bounds.stride if touches == 3 else 0
         seen[i, _TOUCHES] = touches
+        record.speeds[i, steps[i] // bounds.stride % record.speeds.shape[1]] = speed
         still[i] = still[i] + bounds.stride if speed < bounds.still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
         elif sigma < bounds.pinched_sigma:
             ending[i] = PINCHED
-        elif still[i] >= bounds.still_steps:
+        elif still[i] >= bounds.still_steps or _fades(i, speed, bounds, record):
             ending[i] = SETTLED
         elif steps[i] >= record.max_steps[i]:
             ending[i] = TIMED_OUT
@@ -138,27 +182,41 @@ class StepCheck:
     ending: IntArray
     stride: int
     _max_steps: IntArray
+    _remains: FloatArray
+    _speeds: FloatArray
+    _pressed: IntArray
     _still: IntArray
     _seen: FloatArray
 
     @classmethod
     def over(
-        cls, scene: Scene, qpos: FloatArray, stride: int = 1, patience: FloatArray | None = None
+        cls,
+        scene: Scene,
+        qpos: FloatArray,
+        stride: int = 1,
+        patience: FloatArray | None = None,
+        remains: FloatArray | None = None,
     ) -> StepCheck:
         """Start watching closings that start from qpos (N, 6), every ``stride`` steps.
 
-        ``patience`` (N,) multiplies the scene's time until a closing has timed out.
+        ``stride`` divides ``SPAN``. ``patience`` (N,) multiplies the scene's time until a closing
+        has timed out. ``remains`` (N,) stands for the scene's own; 0 where anything but the motor
+        and the dampers acts, or in another engine.
         """
         count = len(qpos)
         longer = np.ones(count) if patience is None else patience
         seen = np.zeros((count, _FIELDS))
         seen[:, _SIGMA_START] = scene.sigma(qpos)
+        rest = scene.config.remains if scene.config.friction == 0.0 else 0.0
         return cls(
             scene,
             steps=np.zeros(count, dtype=np.int64),
             ending=np.full(count, RUNNING, dtype=np.int64),
             stride=stride,
             _max_steps=np.ceil(scene.config.max_steps * longer).astype(np.int64),
+            _remains=np.full(count, rest) if remains is None else remains,
+            _speeds=np.zeros((count, 2 * SPAN // stride + 1)),
+            _pressed=np.zeros(count, dtype=np.int64),
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )
@@ -179,8 +237,12 @@ class StepCheck:
             config.still_speed,
             config.still_steps,
             self.stride,
+            SPAN * config.time_step,
         )
-        record = _Record(self._max_steps, self._seen, self._still, self.steps, self.ending)
+        record = _Record(
+            self._max_steps, self._remains, self._speeds, self._pressed, self._seen, self._still,
+            self.steps, self.ending,
+        )  # fmt: skip
         observe(ids, qpos, qvel, shape, bounds, record)
 
     def diverged(self, ids: IntArray) -> None:

@@ -85,6 +85,17 @@ class SimConfig:
     still_steps: int = 10
     """[step] ... for this many steps in a row, while two fingers press."""
 
+    remains: float = 1e-5
+    """[diameter, rad] Without friction a closing is also at rest when its speed falls
+    exponentially and what is left of the way, speed times time constant, is below this
+    (``sim.closing.step_check``): a tenth of what counts as the target. 0: wait for
+    ``still_speed``."""
+
+    computed_fingers: int = 2
+    """[1] While no more fingers than these touch, the engine's steps are computed by
+    ``sim.closing.push``: the same map to 1e-9, at a quarter of the cost. 0: all steps by the
+    engine."""
+
     max_time: float = 20.0
     """[s] A closing still moving then has timed out: a failure to look at. The slowest grasp known
     (three straight edges, ``models/hard/spiral_tunnel``) takes 11 s."""
@@ -97,7 +108,10 @@ class SimConfig:
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
-        for name in ("friction", "linkage_compliance"):
+        fingers = self.computed_fingers
+        if fingers not in (0, 1, 2):
+            raise InputError(f"SimConfig.computed_fingers is {fingers!r}; 0, 1 or 2 is needed")
+        for name in ("friction", "linkage_compliance", "remains"):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value >= 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; >= 0 is needed")
