@@ -220,7 +220,8 @@ def _rows(
             near = plant.reach[piece] + plant.radius
             if mx * mx + my * my >= near * near:
                 continue
-            away, nx, ny = _from_piece(plant, piece, x, y)
+            first, last = plant.first[piece], plant.first[piece + 1]
+            away, nx, ny = _from_piece(plant.points, first, last, x, y)
             if away <= 0.0 or away >= plant.radius:
                 if away <= 0.0:
                     return -1
@@ -253,15 +254,14 @@ def _rows(
 
 @njit(cache=True)
 def _from_piece(
-    plant: _Plant, piece: int, x: float, y: float
+    points: FloatArray, first: int, last: int, x: float, y: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
     """Distance of a point from a convex piece and the unit vector away from it; 0: inside."""
-    first, last = plant.first[piece], plant.first[piece + 1]
     nearest, nx, ny = math.inf, 0.0, 0.0
     outside = False
-    ax, ay = x - plant.points[last - 1, 0], y - plant.points[last - 1, 1]
+    ax, ay = x - points[last - 1, 0], y - points[last - 1, 1]
     for j in range(first, last):
-        bx, by = x - plant.points[j, 0], y - plant.points[j, 1]
+        bx, by = x - points[j, 0], y - points[j, 1]
         ex, ey = ax - bx, ay - by
         outside |= ax * ey - ay * ex < 0.0
         share = (ax * ex + ay * ey) / (ex * ex + ey * ey)

@@ -73,13 +73,14 @@ class _Shape(NamedTuple):
 
 class _Bounds(NamedTuple):
     """When a closing has ended; ``stride`` [step] is the time between two looks, ``span`` [s] that
-    of ``SPAN`` steps."""
+    of ``SPAN`` steps, ``turn_too`` [diameter / rad] what a turn that is left counts for."""
 
     pinched_sigma: float
     still_speed: float
     still_steps: int
     stride: int
     span: float
+    turn_too: float
 
 
 class _Record(NamedTuple):
@@ -100,9 +101,10 @@ class _Record(NamedTuple):
 
 @njit(cache=True)
 def _fades(
-    i: int, speed: float, bounds: _Bounds, record: _Record
+    i: int, moving: float, turning: float, bounds: _Bounds, record: _Record
 ) -> bool:  # pragma: no cover - compiled
     """Whether the speed falls exponentially and what is left of the way is short enough."""
+    speed = max(moving, turning)
     if not 0.0 < speed < _SLOW or record.pressed[i] < 2 * SPAN or record.remains[i] == 0.0:
         return False
     looks, now = record.speeds.shape[1], record.steps[i] // bounds.stride
@@ -113,7 +115,7 @@ def _fades(
     loss, loss_before = math.log(before / speed), math.log(earlier / before)
     if min(loss, loss_before) < _LEAST_LOSS or abs(loss - loss_before) > AGREE * loss_before:
         return False
-    return speed * bounds.span / loss <= record.remains[i]
+    return max(moving, turning * bounds.turn_too) * bounds.span / loss <= record.remains[i]
 
 
 @njit(cache=True)
@@ -145,8 +147,10 @@ def _observe(
             if depth[k] > -TOUCHING:
                 touches += 1
         speed = 0.0
-        for k in range(6):
+        for k in range(5):
             speed = max(speed, abs(qvel[i, k]))
+        moving, turning = speed, abs(qvel[i, 5])
+        speed = max(moving, turning)
         seen[i, _DEPTH] = max(deepest, 0.0)
         seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
@@ -159,7 +163,7 @@ def _observe(
             ending[i] = DIVERGED
         elif sigma < bounds.pinched_sigma:
             ending[i] = PINCHED
-        elif still[i] >= bounds.still_steps or _fades(i, speed, bounds, record):
+        elif still[i] >= bounds.still_steps or _fades(i, moving, turning, bounds, record):
             ending[i] = SETTLED
         elif steps[i] >= record.max_steps[i]:
             ending[i] = TIMED_OUT
@@ -238,6 +242,7 @@ class StepCheck:
             config.still_steps,
             self.stride,
             SPAN * config.time_step,
+            config.remains / config.remains_turn,
         )
         record = _Record(
             self._max_steps, self._remains, self._speeds, self._pressed, self._seen, self._still,

@@ -86,10 +86,13 @@ class SimConfig:
     """[step] ... for this many steps in a row, while two fingers press."""
 
     remains: float = 1e-5
-    """[diameter, rad] Without friction a closing is also at rest when its speed falls
-    exponentially and what is left of the way, speed times time constant, is below this
+    """[diameter] Without friction a closing is also at rest when its speed falls exponentially and
+    what is left of the way, speed times time constant, is below this
     (``sim.closing.step_check``): a tenth of what counts as the target. 0: wait for
     ``still_speed``."""
+
+    remains_turn: float = 3e-5
+    """[rad] ... and what is left of the turn is below this, a thirtieth of what counts."""
 
     computed_fingers: int = 2
     """[1] While no more fingers than these touch, the engine's steps are computed by
@@ -104,7 +107,8 @@ class SimConfig:
     """[diameter] A hand whose longest side is shorter than this has shut on nothing: escaped."""
 
     def __post_init__(self) -> None:
-        for name in ("time_step", "drive_force", "finger_damping", "object_damping", "max_time"):
+        positive = ("drive_force", "finger_damping", "object_damping", "max_time", "remains_turn")
+        for name in ("time_step", *positive):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")

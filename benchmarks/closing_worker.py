@@ -1,0 +1,51 @@
+"""Closes for ``benchmarks.closing_against``, with the code of whatever checkout is on its path.
+
+One JSON line in, one out: {"grasp": NAME, "starts": FILE.npy, "friction": MU, "out": FILE.npz} ->
+{"seconds": processor seconds of closing, "steps": mean}. It calls only what both checkouts have.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import sys
+import time
+
+import numpy as np
+
+from sim.closing.batch import close_many
+from sim.world.config import SimConfig
+from sim.world.scene import Scene
+from tests.sim.grasps import l_shape, shipped, t_shape, triangle
+
+GRASPS = {
+    "T": t_shape,
+    "L": l_shape,
+    "pliers": lambda: shipped("pliers"),
+    "saw": lambda: shipped("saw"),
+    "triangle": triangle,
+}
+
+
+def main() -> None:
+    """Answer requests until the input ends."""
+    scenes: dict[tuple[str, float], Scene] = {}
+    for line in sys.stdin:
+        asked = json.loads(line)
+        key = asked["grasp"], asked["friction"]
+        if key not in scenes:
+            max_time = 2.0 if asked["friction"] else 20.0
+            config = SimConfig(friction=asked["friction"], max_time=max_time)
+            scenes[key] = GRASPS[asked["grasp"]]().scene(config)
+        starts = np.load(asked["starts"])
+        begin = time.process_time()
+        closings = close_many(scenes[key], starts, 1)
+        seconds = time.process_time() - begin
+        found = {f.name: getattr(closings, f.name) for f in dataclasses.fields(closings)}
+        np.savez(asked["out"], **found)
+        answer = {"seconds": seconds, "steps": float(closings.steps.mean())}
+        print(json.dumps(answer), flush=True)
+
+
+if __name__ == "__main__":
+    main()
