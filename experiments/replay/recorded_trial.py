@@ -36,7 +36,7 @@ JSON, TRIALS = "replay.json", "trials.parquet"
 
 _POSE = ("x", "y", "theta", "sigma")
 
-_BEFORE: Final = {"remains": 0.0, "computed_fingers": 0}
+_BEFORE: Final = {"remains": 0.0, "computed_contacts": 0}
 """Settings that a replay recorded before there were such did not have."""
 
 _LARGEST: Final = 1_000_000_000

@@ -1,12 +1,14 @@
-"""Until the third finger touches: the engine's own step, for discs on convex pieces, nothing else.
+"""While the object is pushed about: the engine's own step, for discs on convex pieces, no more.
 
-Until then one disc or two push a polygon about on a viscous table. The engine spends 5 to 8 us on
+Three contacts at most push a polygon over a viscous table. The engine spends 5 to 8 us on
 each of these steps, most of it on finding what is near what and on a solver for any number of
 anything. Here the same step is written down for this one scene and costs a quarter: the same
 contacts (disc against the compiled pieces), the same regularization, the same metric, the same
 order of updates. It is the engine's map, not one of our own: positions agree to 1e-9 after hundreds
 of steps (``tests/sim/closing/test_push.py``), every step is counted and looked at like any other,
-and the engine goes on from where it ends: it squeezes, seats, balances and settles.
+and the engine goes on from where it ends. The engine's are all states that might be a grasp: more
+than three contacts, and whatever is touched and slow. ``SimConfig.computed_contacts`` = 0 leaves
+everything to it.
 
 One step of the integrator ``discrete``, with M and D the diagonals of masses and dampings, h the
 time step, W = M + h D, f the motor's pull, and rows J of the linkage and of the contacts:
@@ -39,8 +41,15 @@ from sim.world.scene import Scene
 _STIFFEST: Final = 0.9999
 """The engine's bound on an impedance. Both ends of ours are at it or above: d is constant."""
 
-_MOST: Final = 8
-"""Contacts that one step may have here."""
+_MOST: Final = 3
+"""Contacts that one step may have here: a grasp of discs in corners has more."""
+
+_SLOW: Final = 0.02
+"""[free speed] An object that is touched and slower than this is the engine's: whether it is at
+rest, or passes a balance, is not for us to say."""
+
+_WILD: Final = 1e10
+"""Positions, velocities or accelerations that large are left to the engine, which warns of them."""
 
 _ROUNDS: Final = 8
 """Tries to find out which contacts press."""
@@ -66,6 +75,7 @@ class _Plant(NamedTuple):
     contact_weight: FloatArray
     contact_law: FloatArray
     stiffness: float
+    slow: float
     points: FloatArray
     first: IntArray
     middle: FloatArray
@@ -107,7 +117,7 @@ class Pushed:
 def push(
     scene: Scene, positions: FloatArray, check: StepCheck, rows: BoolArray | None = None
 ) -> Pushed:
-    """Close from rest at positions (N, 6) while no more than ``computed_fingers`` touch.
+    """Close from rest at positions (N, 6) while the object is pushed about.
 
     Steps are counted and looked at in ``check``, every ``check.stride``; what cannot be computed
     here (friction, a linkage that yields, trials outside ``rows``) is left to the engine as it is.
@@ -117,7 +127,7 @@ def push(
     if not _known(scene) or not count:
         return found
     chosen = np.ones(count, dtype=np.bool_) if rows is None else rows
-    plant, room, most = _plant(scene), _room(), scene.config.computed_fingers
+    plant, room, most = _plant(scene), _room(), scene.config.computed_contacts
     running = np.flatnonzero(chosen & np.isfinite(positions).all(axis=1))
     running = running[check.ending[running] == RUNNING]
     state = np.stack([found.positions, found.velocities, found.accelerations], axis=1)
@@ -137,7 +147,7 @@ def _known(scene: Scene) -> bool:
     """Whether the step is the one written down here."""
     config = scene.config
     rigid = config.linkage_compliance == 0.0 and config.friction == 0.0
-    return config.computed_fingers > 0 and rigid and min(config.solimp[:2]) >= _STIFFEST
+    return config.computed_contacts > 0 and rigid and min(config.solimp[:2]) >= _STIFFEST
 
 
 @njit(cache=True)
@@ -188,6 +198,9 @@ def _step(
             break
     else:
         return False
+    for j in range(6):  # the engine's own bound: it warns, and the trial has diverged
+        if not (abs(qacc[j]) < _WILD and abs(qvel[j]) < _WILD and abs(qpos[j]) < _WILD):
+            return False
     for k in range(3):
         room.total[k] = 0.0
     for k in range(2, count):
@@ -211,10 +224,9 @@ def _rows(
         room.wanted[k] = -plant.link_law[1] * speed - plant.link_law[0] * error
     fingers_seen(plant.directions, qpos, room.fingers)
     cos, sin = math.cos(qpos[5]), math.sin(qpos[5])
-    count, touching = 2, 0
+    count = 2
     for finger in range(3):
         x, y = room.fingers[finger, 0], room.fingers[finger, 1]
-        before = count
         for piece in range(len(plant.reach)):
             mx, my = x - plant.middle[piece, 0], y - plant.middle[piece, 1]
             near = plant.reach[piece] + plant.radius
@@ -226,7 +238,7 @@ def _rows(
                 if away <= 0.0:
                     return -1
                 continue
-            if count == _MOST + 2:
+            if count == most + 2:
                 return -1
             row = room.rows[count]
             for j in range(3):
@@ -246,10 +258,12 @@ def _rows(
             room.wanted[count] = -plant.contact_law[1] * speed - plant.contact_law[0] * depth
             room.finger[count] = finger
             count += 1
-        touching += count > before
-        if touching > most:
-            return -1
-    return count
+    if count == 2:
+        return count
+    for j in range(6):
+        if abs(qvel[j]) >= plant.slow:
+            return count
+    return -1
 
 
 @njit(cache=True)
@@ -359,7 +373,7 @@ def _plant(scene: Scene) -> _Plant:
         config.time_step, 1.0 / mass, metric, 1.0 / metric, damping, pull, hand.directions,
         float(model.geom("finger_1_tip").size[0]), links, link_weight,
         _law(np.array(model.eq_solref[0]), config.time_step), contact_weight + weights[body["object"]],
-        _law(np.array(config.solref), config.time_step), stiffness, points, first, middle, np.array(reach),
+        _law(np.array(config.solref), config.time_step), stiffness, _SLOW * config.free_speed, points, first, middle, np.array(reach),
     )  # fmt: skip
 
 

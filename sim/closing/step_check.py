@@ -41,21 +41,21 @@ TOUCHING = 1e-6
 """[diameter] A finger this close to the outline touches it: ten times the resolution of the
 engine's meshes, a thousandth of what a step moves."""
 
-SPAN = 5
+SPAN = 20
 """[step] Two spans in a row tell whether a speed falls exponentially."""
 
 AGREE = 0.01
 """[1] ... if what its logarithm loses in the one and in the other differs by less than this. A
 second motion hidden under the first (a slower tail, a body that leaves an unstable balance) then
-has less than an eighth of the speed, a hundredth where it falls as fast as a contact does (10 steps
-a decade); a motion that turns back, or is held by friction, falls faster and faster or not at
-all."""
+has less than a thirtieth of the speed; a motion that turns back, or is held by friction, falls
+faster and faster or not at all."""
 
 _SLOW = 1e-3
 """[diameter / s, rad / s] Faster than this nothing is called rest."""
 
-_LEAST_LOSS = 1e-3
-"""[1] A speed that loses less of its logarithm over a span does not fall."""
+_LEAST_LOSS, _MOST_LOSS = 1e-3, 1.0
+"""[1] A speed that loses less of its logarithm over a span does not fall; one that loses more falls
+as contacts do, which is waited for: it is over soon, and resting penetration is measured."""
 
 (_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
 _FIELDS = 6
@@ -113,7 +113,7 @@ def _fades(
     if not earlier > before > speed:
         return False
     loss, loss_before = math.log(before / speed), math.log(earlier / before)
-    if min(loss, loss_before) < _LEAST_LOSS or abs(loss - loss_before) > AGREE * loss_before:
+    if not _LEAST_LOSS < loss < _MOST_LOSS or abs(loss - loss_before) > AGREE * loss_before:
         return False
     return max(moving, turning * bounds.turn_too) * bounds.span / loss <= record.remains[i]
 

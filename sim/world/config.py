@@ -94,10 +94,10 @@ class SimConfig:
     remains_turn: float = 3e-5
     """[rad] ... and what is left of the turn is below this, a thirtieth of what counts."""
 
-    computed_fingers: int = 2
-    """[1] While no more fingers than these touch, the engine's steps are computed by
-    ``sim.closing.push``: the same map to 1e-9, at a quarter of the cost. 0: all steps by the
-    engine."""
+    computed_contacts: int = 3
+    """[1] While the object is pushed about and has no more contacts than these, the engine's steps
+    are computed by ``sim.closing.push``: the same map to 1e-9, at a quarter of the cost. 0: all
+    steps by the engine."""
 
     max_time: float = 20.0
     """[s] A closing still moving then has timed out: a failure to look at. The slowest grasp known
@@ -112,9 +112,9 @@ class SimConfig:
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
-        fingers = self.computed_fingers
-        if fingers not in (0, 1, 2):
-            raise InputError(f"SimConfig.computed_fingers is {fingers!r}; 0, 1 or 2 is needed")
+        contacts = self.computed_contacts
+        if contacts not in (0, 1, 2, 3):
+            raise InputError(f"SimConfig.computed_contacts is {contacts!r}; 0 to 3 is needed")
         for name in ("friction", "linkage_compliance", "remains"):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value >= 0.0:
