@@ -41,24 +41,27 @@ TOUCHING = 1e-6
 """[diameter] A finger this close to the outline touches it: ten times the resolution of the
 engine's meshes, a thousandth of what a step moves."""
 
-SPAN = 20
-"""[step] Two spans in a row tell whether a speed falls exponentially."""
+PART, PARTS = 0.5, 3
+"""[1] A tail is exponential if this many parts in a row, in each of which the logarithm of the speed
+falls by ``PART``, ..."""
 
 AGREE = 0.01
-"""[1] ... if what its logarithm loses in the one and in the other differs by less than this. A
-second motion hidden under the first (a slower tail, a body that leaves an unstable balance) then
-has less than a thirtieth of the speed; a motion that turns back, or is held by friction, falls
-faster and faster or not at all."""
+"""[1] ... fall at rates that differ by less than this. A second motion hidden under the first (a
+slower tail, a body that leaves an unstable balance) then has less than a thirtieth of the speed;
+what swings, turns back or creeps falls faster and faster, or not at all."""
 
 _SLOW = 1e-3
 """[diameter / s, rad / s] Faster than this nothing is called rest."""
 
-_LEAST_LOSS, _MOST_LOSS = 1e-3, 1.0
-"""[1] A speed that loses less of its logarithm over a span does not fall; one that loses more falls
-as contacts do, which is waited for: it is over soon, and resting penetration is measured."""
+_SLOWEST, _FASTEST = 5e-5, 0.05
+"""[1 / step] Rates of tails that are foreseen. A faster one is a contact's own: it is waited for,
+since it is over soon and the depth at rest is measured."""
 
 (_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
 _FIELDS = 6
+
+(_SPEED, _PART_SPEED, _PART_STEP, _RATE, _GOOD) = range(5)
+_TAIL_FIELDS = 5
 
 
 class _Shape(NamedTuple):
@@ -72,27 +75,27 @@ class _Shape(NamedTuple):
 
 
 class _Bounds(NamedTuple):
-    """When a closing has ended; ``stride`` [step] is the time between two looks, ``span`` [s] that
-    of ``SPAN`` steps, ``turn_too`` [diameter / rad] what a turn that is left counts for."""
+    """When a closing has ended; ``stride`` [step] is the time between two looks, ``step``
+    [s] one step, ``turn_too`` [diameter / rad] what a turn that is left counts for."""
 
     pinched_sigma: float
     still_speed: float
     still_steps: int
     stride: int
-    span: float
+    step: float
     turn_too: float
 
 
 class _Record(NamedTuple):
     """What is updated, a row each for N closings; ``max_steps``, ``remains`` (N,) are read only.
 
-    ``speeds`` (N, looks) are the last ones, ``pressed`` (N,) [step] since when all fingers touch.
+    ``tail`` (N, 5) is the last speed; speed and step at which the present part of the tail began; the
+    rate of the part before and how many in a row had it.
     """
 
     max_steps: IntArray
     remains: FloatArray
-    speeds: FloatArray
-    pressed: IntArray
+    tail: FloatArray
     seen: FloatArray
     still: IntArray
     steps: IntArray
@@ -104,18 +107,24 @@ def _fades(
     i: int, moving: float, turning: float, bounds: _Bounds, record: _Record
 ) -> bool:  # pragma: no cover - compiled
     """Whether the speed falls exponentially and what is left of the way is short enough."""
-    speed = max(moving, turning)
-    if not 0.0 < speed < _SLOW or record.pressed[i] < 2 * SPAN or record.remains[i] == 0.0:
+    speed, tail, now = max(moving, turning), record.tail[i], record.steps[i]
+    before = tail[_SPEED]
+    tail[_SPEED] = speed
+    if not 0.0 < speed < before or record.seen[i, _TOUCHES] < 3:
+        tail[_PART_SPEED], tail[_PART_STEP], tail[_RATE], tail[_GOOD] = speed, now, 0.0, 0
         return False
-    looks, now = record.speeds.shape[1], record.steps[i] // bounds.stride
-    before = record.speeds[i, (now - SPAN // bounds.stride) % looks]
-    earlier = record.speeds[i, (now - 2 * SPAN // bounds.stride) % looks]
-    if not earlier > before > speed:
+    loss, steps = math.log(tail[_PART_SPEED] / speed), now - tail[_PART_STEP]
+    if loss >= PART:
+        rate, last = loss / steps, tail[_RATE]
+        tail[_GOOD] = tail[_GOOD] + 1 if abs(rate - last) <= AGREE * last else 1
+        tail[_PART_SPEED], tail[_PART_STEP], tail[_RATE] = speed, now, rate
+        loss, steps = 0.0, 0.0
+    rate = tail[_RATE]
+    if tail[_GOOD] < PARTS or abs(loss - rate * steps) > AGREE * PART:
         return False
-    loss, loss_before = math.log(before / speed), math.log(earlier / before)
-    if not _LEAST_LOSS < loss < _MOST_LOSS or abs(loss - loss_before) > AGREE * loss_before:
+    if speed >= _SLOW or not _SLOWEST < rate < _FASTEST:
         return False
-    return max(moving, turning * bounds.turn_too) * bounds.span / loss <= record.remains[i]
+    return max(moving, turning * bounds.turn_too) * bounds.step / rate <= record.remains[i]
 
 
 @njit(cache=True)
@@ -155,15 +164,14 @@ def _observe(
         seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
-        record.pressed[i] = record.pressed[i] + bounds.stride if touches == 3 else 0
         seen[i, _TOUCHES] = touches
-        record.speeds[i, steps[i] // bounds.stride % record.speeds.shape[1]] = speed
+        fades = record.remains[i] > 0.0 and _fades(i, moving, turning, bounds, record)
         still[i] = still[i] + bounds.stride if speed < bounds.still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
         elif sigma < bounds.pinched_sigma:
             ending[i] = PINCHED
-        elif still[i] >= bounds.still_steps or _fades(i, moving, turning, bounds, record):
+        elif still[i] >= bounds.still_steps or fades:
             ending[i] = SETTLED
         elif steps[i] >= record.max_steps[i]:
             ending[i] = TIMED_OUT
@@ -187,8 +195,7 @@ class StepCheck:
     stride: int
     _max_steps: IntArray
     _remains: FloatArray
-    _speeds: FloatArray
-    _pressed: IntArray
+    _tail: FloatArray
     _still: IntArray
     _seen: FloatArray
 
@@ -203,7 +210,7 @@ class StepCheck:
     ) -> StepCheck:
         """Start watching closings that start from qpos (N, 6), every ``stride`` steps.
 
-        ``stride`` divides ``SPAN``. ``patience`` (N,) multiplies the scene's time until a closing
+        ``patience`` (N,) multiplies the scene's time until a closing
         has timed out. ``remains`` (N,) stands for the scene's own; 0 where anything but the motor
         and the dampers acts, or in another engine.
         """
@@ -219,8 +226,7 @@ class StepCheck:
             stride=stride,
             _max_steps=np.ceil(scene.config.max_steps * longer).astype(np.int64),
             _remains=np.full(count, rest) if remains is None else remains,
-            _speeds=np.zeros((count, 2 * SPAN // stride + 1)),
-            _pressed=np.zeros(count, dtype=np.int64),
+            _tail=np.zeros((count, _TAIL_FIELDS)),
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )
@@ -241,12 +247,12 @@ class StepCheck:
             config.still_speed,
             config.still_steps,
             self.stride,
-            SPAN * config.time_step,
+            config.time_step,
             config.remains / config.remains_turn,
         )
         record = _Record(
-            self._max_steps, self._remains, self._speeds, self._pressed, self._seen, self._still,
-            self.steps, self.ending,
+            self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,
+            self.ending,
         )  # fmt: skip
         observe(ids, qpos, qvel, shape, bounds, record)
 
