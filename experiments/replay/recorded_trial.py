@@ -139,7 +139,11 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
                 f"{str(folder / JSON)!r} was recorded before outline and settings were kept in it; "
                 "replay the case once more"
             )
-        kept: dict[str, Any] = {**_BEFORE, **run["config"], "solimp": tuple(run["config"]["solimp"])}
+        kept: dict[str, Any] = {
+            **_BEFORE,
+            **run["config"],
+            "solimp": tuple(run["config"]["solimp"]),
+        }
         config = SimConfig(**kept)
         x, y = run["plan"]["hand"]["unit_fingers"][2]
         return RecordedTrial(

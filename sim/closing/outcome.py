@@ -11,7 +11,6 @@ from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from sim.closing.step_check import ENDINGS, StepCheck
 
-
 RULES: Final = "2"
 """Counts the changes to closings that change a recorded number: part of every record's versions.
 

@@ -16,11 +16,13 @@ time step, W = M + h D, f the motor's pull, and rows J of the linkage and of the
     a = argmin  (a - a_0)' W (a - a_0) / 2  +  sum_i s_i (J_i a - r_i)^2 / 2,   W a_0 = f - D v
     v' = v + h a,   q' = q + h v'
 
-A contact's term counts only while J_i a < r_i (it never pulls). With p_i the depth (negative) or the
-linkage's error, d the impedance, K and B of the time constant and the damping ratio,
+A contact's term counts only while J_i a < r_i (it never pulls). With p_i the depth (negative) or
+the linkage's error, d the impedance, K and B of the time constant and the damping ratio,
 
     r_i = -((B + h K d) J_i v + K d p_i) / (1 + h B + h^2 K d)
-    s_i = d / (1 - d) / w_i,   w_i = w_0 (J W^-1 J') / (J M^-1 J'),   w_0 the compiled inverse weights
+    s_i = d / (1 - d) / w_i,   w_i = w_0 (J W^-1 J') / (J M^-1 J')
+
+and w_0 the compiled inverse weights.
 """
 
 from __future__ import annotations
@@ -123,7 +125,8 @@ def push(
     here (friction, a linkage that yields, trials outside ``rows``) is left to the engine as it is.
     """
     count = len(positions)
-    found = Pushed(np.array(positions), *np.zeros((2, count, 6)), np.zeros(count))
+    still = np.zeros((2, count, 6))
+    found = Pushed(np.array(positions), still[0], still[1], np.zeros(count))
     if not _known(scene) or not count:
         return found
     chosen = np.ones(count, dtype=np.bool_) if rows is None else rows
@@ -303,7 +306,7 @@ def _dot(rows: FloatArray, k: int, vector: FloatArray) -> float:  # pragma: no c
 def _solve(
     plant: _Plant, room: _Room, count: int, qvel: FloatArray, qacc: FloatArray
 ) -> None:  # pragma: no cover - compiled
-    """qacc = the minimum with the contacts that press: Cholesky, six by six."""
+    """Set ``qacc`` to the minimum with the contacts that press: Cholesky, six by six."""
     system, right = room.system, room.right
     for i in range(6):
         for j in range(i):
@@ -369,12 +372,28 @@ def _plant(scene: Scene) -> _Plant:
     ends = list(zip(first[:-1].tolist(), first[1:].tolist(), strict=True))
     middle = np.array([points[a:b].mean(axis=0) for a, b in ends])
     reach = [np.hypot(*(points[a:b] - m).T).max() for (a, b), m in zip(ends, middle, strict=True)]
+    step = config.time_step
     return _Plant(
-        config.time_step, 1.0 / mass, metric, 1.0 / metric, damping, pull, hand.directions,
-        float(model.geom("finger_1_tip").size[0]), links, link_weight,
-        _law(np.array(model.eq_solref[0]), config.time_step), contact_weight + weights[body["object"]],
-        _law(np.array(config.solref), config.time_step), stiffness, _SLOW * config.free_speed, points, first, middle, np.array(reach),
-    )  # fmt: skip
+        step=step,
+        lighter=1.0 / mass,
+        metric=metric,
+        softer=1.0 / metric,
+        damping=damping,
+        pull=pull,
+        directions=hand.directions,
+        radius=float(model.geom("finger_1_tip").size[0]),
+        links=links,
+        link_weight=link_weight,
+        link_law=_law(np.array(model.eq_solref[0]), step),
+        contact_weight=contact_weight + weights[body["object"]],
+        contact_law=_law(np.array(config.solref), step),
+        stiffness=stiffness,
+        slow=_SLOW * config.free_speed,
+        points=points,
+        first=first,
+        middle=middle,
+        reach=np.array(reach),
+    )
 
 
 _BODIES: Final = ("finger_1", "finger_2", "finger_3", "object")

@@ -42,8 +42,8 @@ TOUCHING = 1e-6
 engine's meshes, a thousandth of what a step moves."""
 
 PART, PARTS = 0.5, 3
-"""[1] A tail is exponential if this many parts in a row, in each of which the logarithm of the speed
-falls by ``PART``, ..."""
+"""[1] A tail is exponential if this many parts in a row, in each of which the logarithm of the
+speed falls by ``PART``, ..."""
 
 AGREE = 0.01
 """[1] ... fall at rates that differ by less than this. A second motion hidden under the first (a
@@ -76,7 +76,8 @@ class _Shape(NamedTuple):
 
 class _Bounds(NamedTuple):
     """When a closing has ended; ``stride`` [step] is the time between two looks, ``step``
-    [s] one step, ``turn_too`` [diameter / rad] what a turn that is left counts for."""
+    [s] one step, ``turn_too`` [diameter / rad] what a turn that is left counts for.
+    """
 
     pinched_sigma: float
     still_speed: float
@@ -89,8 +90,8 @@ class _Bounds(NamedTuple):
 class _Record(NamedTuple):
     """What is updated, a row each for N closings; ``max_steps``, ``remains`` (N,) are read only.
 
-    ``tail`` (N, 5) is the last speed; speed and step at which the present part of the tail began; the
-    rate of the part before and how many in a row had it.
+    ``tail`` (N, 5) is the last speed; speed and step at which the present part of the tail began;
+    the rate of the part before and how many in a row had it.
     """
 
     max_steps: IntArray
