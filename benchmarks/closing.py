@@ -25,7 +25,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from benchmarks.closing_against import GRASPS, SETS, compare_outcomes, compare_speed
+from benchmarks.closing_against import ALL, GRASPS, SETS, compare_outcomes, compare_speed
 from benchmarks.planner import timed
 from icage.planner import plan
 from icage.sampling import draw_starts
@@ -56,9 +56,7 @@ def main() -> None:
     parser.add_argument("--update-baseline", action="store_true")
     parser.add_argument("--against", type=Path, help="a checkout of another commit")
     parser.add_argument("--outcomes", action="store_true", help="with it: every verdict")
-    parser.add_argument(
-        "--only", nargs="*", choices=GRASPS, default=list(GRASPS), help="grasps for --against"
-    )
+    parser.add_argument("--only", nargs="*", choices=ALL, help="grasps for --against")
     parser.add_argument(
         "--sets", nargs="*", choices=SETS, default=list(SETS), help="starts for --outcomes"
     )
@@ -92,9 +90,13 @@ def main() -> None:
 def _against(options: argparse.Namespace) -> None:
     """Beside another checkout: verdicts, or speed, which the baseline keeps too."""
     if options.outcomes:
-        differ = compare_outcomes(options.against, options.trials, options.only, options.sets)
+        differ = compare_outcomes(
+            options.against, options.trials, options.only or list(ALL), options.sets
+        )
         raise SystemExit(f"{differ} verdicts differ" if differ else 0)
-    figures = compare_speed(options.against, options.trials, options.passes, options.only)
+    figures = compare_speed(
+        options.against, options.trials, options.passes, options.only or list(GRASPS)
+    )
     for path in [BASELINE] * options.update_baseline + [options.json] * bool(options.json):
         kept = json.loads(path.read_text()) if path.exists() else {}
         path.write_text(json.dumps(kept | figures, indent=1) + "\n")

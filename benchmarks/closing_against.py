@@ -23,10 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.closing_worker import GRASPS
-from icage.errors import SamplingError
+from benchmarks.closing_worker import ALL, GRASPS
 from icage.planner import plan
-from icage.sampling import draw_starts
+from icage.sampling import SamplingError, draw_starts
 from sim.closing.judge import OUTCOMES, judge
 from sim.closing.outcome import ClosingOutcomes
 from tests.sim.grasps import KnownGrasp, starts_near
@@ -90,7 +89,7 @@ def compare_speed(
     print("per second, other and here   ratio: min  median  max   steps, other and here")
     with workers(checkout) as (other, here):
         for name in names:
-            starts = drawn(GRASPS[name](), "guaranteed", trials)
+            starts = drawn(ALL[name](), "guaranteed", trials)
             for one in (other, here):
                 one.close(name, starts[:5])
             pairs = [(other.close(name, starts), here.close(name, starts)) for _ in range(passes)]
@@ -112,7 +111,7 @@ def compare_outcomes(checkout: Path, trials: int, names: Sequence[str], sets: Se
     differing = 0
     with workers(checkout) as (other, here):
         for name in names:
-            grasp = GRASPS[name]()
+            grasp = ALL[name]()
             for which in sets:
                 differing += _compare_set(name, grasp, which, trials, other, here)
     return differing

@@ -13,10 +13,20 @@ import time
 
 import numpy as np
 
+import models
+from icage.outline import Outline
 from sim.closing.batch import close_many
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
-from tests.sim.grasps import l_shape, shipped, t_shape, triangle
+from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
+
+
+def of_file(name: str) -> KnownGrasp:
+    """The grasp of a shipped case of a tool."""
+    case = json.loads((models.CASES.parent / "objects" / name).read_text())
+    contacts = np.array(case["grasp"]["contacts"])
+    return KnownGrasp(Outline(case["outline"]["vertices"]), case["finger_radius"], contacts)
+
 
 GRASPS = {
     "T": t_shape,
@@ -25,6 +35,14 @@ GRASPS = {
     "saw": lambda: shipped("saw"),
     "triangle": triangle,
 }
+WITH_REST = {
+    "pliers_4": lambda: of_file("pliers/cases/4_with_rest.json"),
+    "saw_2": lambda: of_file("saw/cases/2_with_rest.json"),
+    "wrench_1": lambda: of_file("wrench/cases/1_best.json"),
+}
+"""Grasps whose cages have more than the guaranteed set."""
+
+ALL = GRASPS | WITH_REST
 
 
 def main() -> None:
@@ -36,7 +54,7 @@ def main() -> None:
         if key not in scenes:
             max_time = 2.0 if asked["friction"] else 20.0
             config = SimConfig(friction=asked["friction"], max_time=max_time)
-            scenes[key] = GRASPS[asked["grasp"]]().scene(config)
+            scenes[key] = ALL[asked["grasp"]]().scene(config)
         starts = np.load(asked["starts"])
         begin = time.process_time()
         closings = close_many(scenes[key], starts, 1)
