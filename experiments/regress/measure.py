@@ -121,7 +121,7 @@ def in_physics(row: Row, physical: PhysicalCase) -> Row:
     both = plan_both(physical.case, cells=physical.cage) if physical.derived else row.planned
     row = replace(row, physical=physical, physical_plan=both)
     if effort.closings:
-        closed = _closed(row, effort.closings, streams, _close_in_engine, None)
+        closed = _closed(row, effort.closings, streams, lambda s, x: close_many(s, x, 1), None)
         row = replace(row, closed=closed)
         try:
             row = replace(row, shaken=shake_case(physical, seed))
@@ -138,12 +138,6 @@ def in_physics(row: Row, physical: PhysicalCase) -> Row:
 def second_engine() -> bool:
     """Whether the second engine is installed."""
     return importlib.util.find_spec("pymunk") is not None
-
-
-def _close_in_engine(scene: Scene, starts: FloatArray) -> ClosingOutcomes:
-    """Every step by the engine, until nothing moves: here it is the witness."""
-    whole = replace(scene.config, computed_contacts=0, remains=0.0)
-    return close_many(replace(scene, config=whole), starts, 1)
 
 
 def _closed(
