@@ -76,7 +76,7 @@ class _Shape(NamedTuple):
 
 class _Bounds(NamedTuple):
     """When a closing has ended; ``stride`` [step] is the time between two looks, ``step``
-    [s] one step, ``turn_too`` [diameter / rad] what a turn that is left counts for.
+    [s] one step.
     """
 
     pinched_sigma: float
@@ -84,7 +84,6 @@ class _Bounds(NamedTuple):
     still_steps: int
     stride: int
     step: float
-    turn_too: float
 
 
 class _Record(NamedTuple):
@@ -105,10 +104,10 @@ class _Record(NamedTuple):
 
 @njit(cache=True)
 def _fades(
-    i: int, moving: float, turning: float, bounds: _Bounds, record: _Record
+    i: int, speed: float, bounds: _Bounds, record: _Record
 ) -> bool:  # pragma: no cover - compiled
     """Whether the speed falls exponentially and what is left of the way is short enough."""
-    speed, tail, now = max(moving, turning), record.tail[i], record.steps[i]
+    tail, now = record.tail[i], record.steps[i]
     before = tail[_SPEED]
     tail[_SPEED] = speed
     if not 0.0 < speed < before or record.seen[i, _TOUCHES] < 3:
@@ -125,7 +124,7 @@ def _fades(
         return False
     if speed >= _SLOW or not _SLOWEST < rate < _FASTEST:
         return False
-    return max(moving, turning * bounds.turn_too) * bounds.step / rate <= record.remains[i]
+    return speed * bounds.step / rate <= record.remains[i]
 
 
 @njit(cache=True)
@@ -157,16 +156,14 @@ def _observe(
             if depth[k] > -TOUCHING:
                 touches += 1
         speed = 0.0
-        for k in range(5):
+        for k in range(6):
             speed = max(speed, abs(qvel[i, k]))
-        moving, turning = speed, abs(qvel[i, 5])
-        speed = max(moving, turning)
         seen[i, _DEPTH] = max(deepest, 0.0)
         seen[i, _DEPTH_MAX] = max(seen[i, _DEPTH_MAX], deepest)
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
         seen[i, _TOUCHES] = touches
-        fades = record.remains[i] > 0.0 and _fades(i, moving, turning, bounds, record)
+        fades = record.remains[i] > 0.0 and _fades(i, speed, bounds, record)
         still[i] = still[i] + bounds.stride if speed < bounds.still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
@@ -249,7 +246,6 @@ class StepCheck:
             config.still_steps,
             self.stride,
             config.time_step,
-            config.remains / config.remains_turn,
         )
         record = _Record(
             self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,

@@ -85,14 +85,11 @@ class SimConfig:
     still_steps: int = 10
     """[step] ... for this many steps in a row, while two fingers press."""
 
-    remains: float = 1e-5
-    """[diameter] Without friction a closing is also at rest when its speed falls exponentially and
-    what is left of the way, speed times time constant, is below this
-    (``sim.closing.step_check``): a tenth of what counts as the target. 0: wait for
+    remains: float = 5e-6
+    """[diameter, rad] Without friction a closing is also at rest when its speed falls exponentially
+    and what is left of the way, speed times time constant, is below this
+    (``sim.closing.step_check``): a twentieth of what counts as the target. 0: wait for
     ``still_speed``."""
-
-    remains_turn: float = 3e-5
-    """[rad] ... and what is left of the turn is below this, a thirtieth of what counts."""
 
     computed_contacts: int = 3
     """[1] While the object is pushed about and has no more contacts than these, the engine's steps
@@ -107,7 +104,7 @@ class SimConfig:
     """[diameter] A hand whose longest side is shorter than this has shut on nothing: escaped."""
 
     def __post_init__(self) -> None:
-        positive = ("drive_force", "finger_damping", "object_damping", "max_time", "remains_turn")
+        positive = ("drive_force", "finger_damping", "object_damping", "max_time")
         for name in ("time_step", *positive):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
