@@ -25,6 +25,8 @@ class CageWork:
     """Node of each grasp, by id."""
     sagitta: float = 0.0
     """How far the polygon searched may lie inside the true offset, [unit] (0 for points)."""
+    polygon_first: float | None = None
+    """sigma_first of the polygon searched, [unit], where the cage has that of the true curve."""
     remembered: dict[str, object] = field(default_factory=dict[str, object])
     """Point location and escape levels, built when first asked for (see membership)."""
 

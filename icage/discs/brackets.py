@@ -17,7 +17,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
-from icage.discs.offsets import Offsets, check_disc_contacts, directions_on_arcs, offsets
+from icage.discs.offsets import Offsets, directions_on_arcs, offsets
 from icage.discs.true_curve import refine
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
@@ -55,11 +55,10 @@ class ArcLocalCage:
     sagitta: float
 
 
-def plan_discs(
+def plan_by_resolutions(
     outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, method: Method
 ) -> Cage:
-    """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
-    check_disc_contacts(outline, radius, contacts)
+    """The cage of disc fingers whose centres stand on checked ``contacts`` (3, 2)."""
     true = _true_target(outline, hand, contacts, radius)
     local_cages, closed = _local_cages(outline, hand, true, radius, method)
     lower = [local_cage for local_cage in local_cages if local_cage.inner]
@@ -183,6 +182,7 @@ def _bracketed(
         sigma_0=grasps[0].sigma,
         sigma_first=_finite(first),
         sigma_max=_finite(low),
+        sigma_max_lower=_finite(low),
         sigma_max_upper=_finite(high),
         sigma_first_upper=_finite(first_upper),
         sigma_first_converged=converged,
