@@ -265,6 +265,10 @@ def _judge_inside(
     at = np.flatnonzero(nodes >= 0)
     s = sigma[at]
     joined = work.search.node_level[nodes[at]] <= s * (1.0 + LEVEL)
+    if work.polygon_first is not None:
+        # what the polygon joins at its own first level, the true curve joins at sigma_first
+        beyond = work.search.node_level[nodes[at]] >= work.polygon_first * (1.0 - LEVEL)
+        joined &= ~beyond | (s >= first)
     inside = s < escape
     code = np.where(joined, np.where(s < first, TARGET, CAGED), OTHER)
     verdict[at] = np.where(inside, code, ESCAPES)

@@ -111,8 +111,10 @@ class CurveFeatures:
     # ------------------------------------------------------------------ what is asked
 
     def minimum(self, contacts: FloatArray, reach: float) -> Critical | None:
-        """The local minimum next to contacts (fingers, 2) whose fingers are within ``reach`` [unit] of
-        the features they touch; None if Newton's method finds none there."""
+        """The local minimum next to contacts (fingers, 2), or None if Newton's method finds none.
+
+        Every finger is within ``reach`` [unit] of the features that it touches there.
+        """
         return self._solve(contacts, reach, 0)
 
     def puncture(self, contacts: FloatArray, reach: float) -> Critical | None:
@@ -146,8 +148,10 @@ class CurveFeatures:
         return None
 
     def _way_down(self, v: FloatArray) -> FloatArray | None:
-        """A direction (4,) along the touched features in which sigma falls, where none falls to
-        first order: a minimum of chords may stand on the very puncture of the arcs."""
+        """A direction (4,) along the touched features in which sigma falls to second order.
+
+        A minimum of chords may stand on the very puncture of the arcs.
+        """
         near = self._near(v, 1e-6)
         if len({f.finger for f in near}) < 2:
             return None
@@ -282,7 +286,9 @@ class CurveFeatures:
     ) -> tuple[FloatArray, FloatArray] | None:
         gaps, normals = self._gaps(v, features)
         slope = self._slopes(features, normals)
-        force = np.linalg.lstsq(slope.T, np.array([0.0, 0.0, v[2], v[3]]), rcond=1e-9)[0]
+        force: FloatArray = np.asarray(
+            np.linalg.lstsq(slope.T, np.array([0.0, 0.0, v[2], v[3]]), rcond=1e-9)[0], np.float64
+        )
         m = len(features)
         matrix = np.zeros((4 + m, 4 + m))
         for _ in range(_STEPS):
@@ -294,7 +300,7 @@ class CurveFeatures:
             longest = float(np.abs(step[:4]).max())
             if not longest < 0.5:
                 return None
-            v, force = v + step[:4], force + step[4:]
+            v, force = np.asarray(v + step[:4]), np.asarray(force + step[4:], np.float64)
             gaps, normals = self._gaps(v, features)
             slope = self._slopes(features, normals)
             if longest < 1e-14:
@@ -333,7 +339,7 @@ class CurveFeatures:
             return [*features, deepest]
         weak = int(np.argmin(force))
         if force[weak] < -_PUSHES * float(np.abs(force).max()):
-            pushing, miss = nnls(
+            _, miss = nnls(
                 self._slopes(features, self._gaps(v, features)[1]).T,
                 np.array([0.0, 0.0, v[2], v[3]]),
             )
@@ -359,9 +365,7 @@ class CurveFeatures:
                 return Feature(k, vertex, True)
         return Feature(k, q, False)
 
-    def _judged(
-        self, v: FloatArray, features: list[Feature], descending: int
-    ) -> Critical | None:
+    def _judged(self, v: FloatArray, features: list[Feature], descending: int) -> Critical | None:
         """What the hand is, if its forces balance pushing and it is of the wanted kind."""
         gaps, normals = self._gaps(v, features)
         slope = self._slopes(features, normals)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -31,16 +32,19 @@ _NOTHING = 1e-12
 _AT_END = 1e-12
 """[1] A crossing is taken to lie on a segment if its foot is this little beyond the end."""
 
+_PARALLEL = 1e-12
+"""[1] Sine of an angle between two edges that is none."""
+
 _WHOLE = 1e-6
 """[segment] An arc this little longer than a whole number of segments gets no further one."""
 
 _RESTING = 1e-3
-"""[rad] Half the chord on which a contact of an arc rests, so that it has the arc's own normal there;
-5e-7 radii inside the arc."""
+"""[rad] Half the chord on which a contact of an arc rests, so that it has the arc's own normal
+there; 5e-7 radii inside the arc."""
 
 _GRADED = 3.0
-"""[1] Beyond the resting chord each segment ends this many times as far from the contact: chords are
-then flat against the distance from it, and levels there are those of the true curve."""
+"""[1] Beyond the resting chord each segment ends this many times as far from the contact: chords
+are then flat against the distance from it, and levels there are those of the true curve."""
 
 
 class Element(NamedTuple):
@@ -137,7 +141,9 @@ class TrueCurve:
 
     def sagitta(self, segments: int) -> float:
         """Most that the inner polygon may lie inside the curve, [unit]."""
-        widest = max((self._stops(e, segments, None)[1] for e in self.elements if e.turn), default=0.0)
+        widest = max(
+            (self._stops(e, segments, None)[1] for e in self.elements if e.turn), default=0.0
+        )
         return self.radius * (1.0 - math.cos(0.5 * float(widest)))
 
     def on_arcs(self, contacts: FloatArray) -> FloatArray:
@@ -197,7 +203,7 @@ class TrueCurve:
         if touched:
             kept = sorted({*kept, *resting})
         angles = [0.0]
-        for low, high in zip(kept[:-1], kept[1:], strict=True):
+        for low, high in pairwise(kept):
             parts = max(1, math.ceil((high - low) / coarse - _WHOLE))
             angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
         return np.array(angles)
@@ -234,7 +240,7 @@ def _lines(ring: FloatArray, radius: float, size: float) -> list[Element]:
     way = side / length[:, None]
     out = np.column_stack([way[:, 1], -way[:, 0]])
     start = ring + radius * out
-    low, high = _covered_lines(ring, way, out, length, start, radius)
+    low, high = _covered_lines(ring, way, out, length, start, radius, size)
     index = np.arange(n)
     low[index, index] = np.inf
     convex = _turns(ring) > 0.0
@@ -249,7 +255,7 @@ def _lines(ring: FloatArray, radius: float, size: float) -> list[Element]:
 
 def _covered_lines(
     ring: FloatArray, way: FloatArray, out: FloatArray, length: FloatArray, start: FloatArray,
-    radius: float,
+    radius: float, size: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Interval (n, n) of each moved edge (row) that is nearer than the radius to each edge."""
     n = len(ring)
@@ -279,14 +285,19 @@ def _covered_lines(
             point = start[:, None] + t[..., None] * way[:, None]
             foot = ((point - ring[None]) * way[None]).sum(axis=2)
             slack = _AT_END * length[None]
-            steep = np.abs(slope) > 1e-14
+            steep = np.abs(slope) > _PARALLEL
             meet(t, steep & (foot >= -slack) & (foot <= length[None] + slack))
+        # a slot that the finger fits into with no room to spare is closed
+        tight = (np.abs(slope) <= _PARALLEL) & (np.abs(gap - radius) <= _NOTHING * size)
+        tight &= (way[:, None] * way[None]).sum(axis=2) < 0.0
+        along = ((ring[None] - start[:, None]) * way[:, None]).sum(axis=2)
+        meet(along, tight)
+        meet(along - length[None], tight)
     return low, high
 
 
 def _arcs(ring: FloatArray, radius: float, size: float) -> list[Element]:
     """What is left of the arc round every convex vertex."""
-    n = len(ring)
     side = np.roll(ring, -1, axis=0) - ring
     length = np.hypot(side[:, 0], side[:, 1])
     way = side / length[:, None]
@@ -309,15 +320,16 @@ def _arcs(ring: FloatArray, radius: float, size: float) -> list[Element]:
             angle = float(begin[k]) + first
             ends = ring[v] + radius * _unit(np.array([angle, float(begin[k]) + last]))
             found.append(Element(v, ends[0], ends[1], angle, last - first))
-    assert len(ring) == n
     return found
 
 
 def _covered_arcs(
     ring: FloatArray, way: FloatArray, length: FloatArray, centre: FloatArray, radius: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """For circles (rows) and edges (columns): direction of the edge's nearest point, and how far to
-    either side of it the circle is nearer than the radius to the edge, [rad]."""
+    """Where circles (rows) are nearer than the radius to edges (columns), [rad].
+
+    The direction of the edge's nearest point, and how far the interval goes to either side of it.
+    """
     off = ring[None] - centre[:, None]
     t = np.clip(-(off * way[None]).sum(axis=2), 0.0, length[None])
     near = off + t[..., None] * way[None]
@@ -358,7 +370,7 @@ def _covered_arcs(
 def _left(
     low: FloatArray, high: FloatArray, length: float, least: float
 ) -> list[tuple[float, float]]:
-    """What of [0, length] no interval (low, high) covers, without what is shorter than ``least``."""
+    """What of [0, length] no interval (low, high) covers, but for what is below ``least``."""
     use = np.flatnonzero((low < length) & (high > 0.0) & (high - low > 0.0))
     found: list[tuple[float, float]] = []
     at = 0.0

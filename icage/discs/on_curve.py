@@ -18,7 +18,7 @@ from icage.cage import Cage, not_a_cage
 from icage.discs.brackets import plan_by_resolutions
 from icage.discs.critical import Critical, CurveFeatures
 from icage.discs.curve import TrueCurve
-from icage.discs.offsets import check_disc_contacts
+from icage.discs.offsets import check_disc_contacts, directions_on_arcs, offsets
 from icage.discs.true_levels import TrueLevels, true_levels
 from icage.errors import GeometryError
 from icage.geometry.statics import no_depth_reason
@@ -58,6 +58,7 @@ def plan_discs(
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     try:
         curve = TrueCurve.of(outline, radius)
+        curve.inner(SEGMENTS[0])
     except GeometryError:
         check_disc_contacts(outline, radius, contacts)
         return plan_by_resolutions(outline, hand, contacts, radius, method)
@@ -105,6 +106,7 @@ def _solved_inner(
     through = curve.on_arcs(true)
     sagitta = curve.sagitta(segments)
     found: _Inner | None = None
+    last: tuple[float | None, ...] = ()
     for _ in range(_ROUNDS):
         polygon = curve.inner(segments, through)
         local_cage = _local_cage(polygon, curve, hand, true, segments, method)
@@ -121,10 +123,20 @@ def _solved_inner(
         levels = true_levels(features, cage, sagitta, target)
         found = _Inner(cage, levels, through, segments)
         new = _not_yet(curve.on_arcs(_puncture_contacts(levels)), through, features.size)
-        if not len(new):
+        solved = (levels.sigma_first, levels.sigma_max)
+        if not len(new) or _same(last, solved):  # other punctures of the same levels: symmetry
             break
+        last = solved
         through = np.vstack([through, new])
     return found
+
+
+def _same(before: tuple[float | None, ...], now: tuple[float | None, ...]) -> bool:
+    """Whether the levels of two polygons are the same."""
+    return len(before) == len(now) and all(
+        a == b or (a is not None and b is not None and abs(a / b - 1.0) <= _INSIDE)
+        for a, b in zip(before, now, strict=True)
+    )
 
 
 def _puncture_contacts(levels: TrueLevels) -> FloatArray:
@@ -150,10 +162,7 @@ def _enclosed(
     cage, levels = inner.cage, inner.levels
     if not levels.first_solved or not levels.max_solved:
         return None
-    try:
-        polygon = curve.outer(inner.segments, inner.through)
-    except GeometryError:
-        return None
+    polygon = _outer_polygon(curve, inner)
     outer = _local_cage(polygon, curve, hand, true, inner.segments, method)
     if outer is None:
         return None
@@ -192,7 +201,7 @@ def _enclosed(
         grasps=levels.grasps,
         escape_path=path,
         min_finger_gap=gap,
-        warnings=(*cage.warnings, *_warnings(curve, levels)),
+        warnings=_warnings(curve, levels),
         work=None
         if cage.work is None
         else replace(
@@ -203,8 +212,23 @@ def _enclosed(
     )
 
 
+def _outer_polygon(curve: TrueCurve, inner: _Inner) -> Outline:
+    """Tangents through the same contacts; where two of them cross, the union of them all."""
+    try:
+        return curve.outer(inner.segments, inner.through)
+    except GeometryError:
+        arcs = directions_on_arcs(curve.outline, curve.radius, inner.through)
+        return offsets(curve.outline, curve.radius, inner.segments, arcs).outer
+
+
 def _warnings(curve: TrueCurve, levels: TrueLevels) -> tuple[str, ...]:
     told: list[str] = []
+    if levels.rough_first != levels.sigma_first:
+        rough = "no level" if levels.rough_first is None else f"{levels.rough_first:.9g}"
+        told.append(
+            "sigma_first depends on how deep a minimum must be to count: "
+            f"{levels.sigma_first:.9g} (1e-10 of the diameter, used), {rough} (1e-6)"
+        )
     if curve.closed_pockets:
         told.append(f"the finger's radius closes {curve.closed_pockets} pocket(s) of the outline")
     if levels.unsolved:

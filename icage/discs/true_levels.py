@@ -16,13 +16,13 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture
 from icage.discs.critical import Critical, CurveFeatures
-from icage.tolerance import DEPTH_CUT, LEVEL
+from icage.tolerance import DEPTH_CUT, DEPTH_ROUGH, LEVEL
 
 _SAME = 1e-7
 """[diameter] Two solved minima whose fingers are this near are one."""
 
 _NEAR = 2.0
-"""[sagitta] A feature is looked at if a finger of the polygon's hand is this near to touching it."""
+"""[sagitta] Features that a finger of the polygon's hand is this near to touching are tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class TrueLevels:
     """Grasps and punctures of a cage of disc fingers on the true curve.
 
     ``sigma_first`` and ``sigma_max`` [unit] are None where nothing is joined or the hand never
-    escapes. ``first_solved`` and ``max_solved`` say whether they are solved on the true curve; a level
-    that is not is the polygon's. ``grasps_solved`` counts the grasps that are, ``origin`` holds for
-    each grasp the id of the polygon's grasp that led to it.
+    escapes. ``first_solved`` and ``max_solved`` say whether they are solved on the true curve; a
+    level that is not is the polygon's. ``unsolved`` are ids of grasps that are not, ``origin`` holds
+    for each grasp the id of the polygon's grasp that led to it.
     """
 
     sigma_0: float
@@ -44,6 +44,8 @@ class TrueLevels:
     max_solved: bool
     unsolved: tuple[int, ...]
     origin: tuple[int, ...]
+    rough_first: float | None
+    """sigma_first if only minima counted that are deeper than 1e-6 of the diameter."""
 
 
 def true_levels(
@@ -91,6 +93,7 @@ class _Solving:
         punctures: list[Puncture] = []
         solved: list[bool] = []
         last: tuple[Puncture, bool] | None = None
+        rough: list[float] = []
         for puncture in self._cage.punctures:
             if puncture.kind == "escape":
                 last = self._puncture(puncture)
@@ -104,10 +107,14 @@ class _Solving:
             if found.sigma - lowest <= self._least_depth:
                 continue
             punctures.append(replace(found, joins=tuple(new)))
+            if found.sigma - lowest > DEPTH_ROUGH * self._features.size:
+                rough.append(found.sigma)
             # one minimum that is there and deep enough makes it a puncture
             deep = [k for k in new if found.sigma - self._grasps[k].sigma > self._least_depth]
             solved.append(is_solved and any(k not in self._unsolved for k in deep))
-        return self._settled(punctures, solved, last)
+        levels = self._settled(punctures, solved, last)
+        ends = [] if levels.sigma_max is None else [levels.sigma_max]
+        return replace(levels, rough_first=min([*rough, *ends], default=None))
 
     def _add(self, grasp: GraspMinimum, known: Critical | None) -> None:
         """Solve a grasp and give it its place, that of another one if they are the same."""
@@ -175,9 +182,7 @@ class _Solving:
             ),
         )  # fmt: skip
         number = {place: k for k, place in enumerate(kept)}
-        grasps = tuple(
-            replace(self._grasps[p], id=number[p], joined_at=joined_at[p]) for p in kept
-        )
+        grasps = tuple(replace(self._grasps[p], id=number[p], joined_at=joined_at[p]) for p in kept)
         merged = [replace(p, joins=tuple(sorted(number[j] for j in p.joins))) for p in merged]
         max_solved = last is not None and last[1]
         if last is not None:
@@ -193,4 +198,5 @@ class _Solving:
             max_solved=last is None or max_solved,
             unsolved=tuple(number[p] for p in sorted(self._unsolved) if p in number),
             origin=tuple(self._origin[p] for p in kept),
+            rough_first=None,
         )
