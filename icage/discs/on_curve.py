@@ -1,15 +1,18 @@
 """The cage for disc fingers: levels solved on the true curve, two polygons as the certificate.
 
-A coarse inner polygon (chords) names the minima and punctures; they are solved on the true curve;
-the polygon is drawn again through the contacts of its punctures, until no new ones appear. Then its
-escape level and that of an outer polygon (tangents) through the same contacts enclose the solved
-one. What does not come out so is left to ``icage.discs.brackets``, which says between which
+Coarse polygons, an outer one (tangents) and an inner one (chords), name the minima and punctures;
+they are solved on the true curve; the inner polygon is drawn again through the contacts of its
+punctures, until no new ones appear. Chords or tangents alone can hide a shallow minimum, so
+sigma_first solved from either has to be the same. Then the escape levels of both polygons, drawn
+through the same contacts, enclose the solved one. Where one of this fails finer polygons are tried,
+and what does not come out at all is left to ``icage.discs.brackets``, which says between which
 polygons' levels the truth lies. [docs/theory.md, Sec. 4]
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,16 +24,15 @@ from icage.discs.curve import TrueCurve
 from icage.discs.offsets import check_disc_contacts, directions_on_arcs, offsets
 from icage.discs.true_levels import TrueLevels, true_levels
 from icage.errors import GeometryError
-from icage.geometry.statics import no_depth_reason
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
 from icage.method import LocalCage, Method
 from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT, TARGET_TURN
 
-SEGMENTS = (8, 32)
+SEGMENTS = (8, 24, 64)
 """Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
-unsolved or the bracket wide."""
+unsolved, the two polygons disagree or the bracket is wide."""
 
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
@@ -40,16 +42,6 @@ _THROUGH = 1e-6
 
 _INSIDE = 1e-9
 """[1] A solved level may be this little (relative) outside its bracket: rounding."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Inner:
-    """An inner polygon's cage and the levels solved from it."""
-
-    cage: Cage
-    levels: TrueLevels
-    through: FloatArray
-    segments: int
 
 
 def plan_discs(
@@ -67,12 +59,14 @@ def plan_discs(
     target = _target(features, contacts)
     true = contacts if target is None else target.contacts
     for segments in SEGMENTS:
-        inner = _solved_inner(curve, features, hand, contacts, true, target, method, segments)
+        look = _Polygons(curve, features, method, contacts, true, target, segments)
+        outer = look.outer_levels()
+        inner = look.inner_levels(outer)
         if isinstance(inner, Cage):
             return inner
         if inner is None:
             break
-        cage = _enclosed(curve, hand, contacts, true, inner, method)
+        cage = look.enclosed(outer, inner)
         if cage is not None:
             return cage
     return plan_by_resolutions(outline, hand, contacts, radius, method)
@@ -87,138 +81,166 @@ def _target(features: CurveFeatures, contacts: FloatArray) -> Critical | None:
     return found if far <= TARGET_SHIFT * features.size else None
 
 
-def _local_cage(
-    polygon: Outline, curve: TrueCurve, hand: HandShape, true: FloatArray, segments: int,
-    method: Method,
-) -> LocalCage | None:  # fmt: skip
-    # on chords a contact of an arc may rest anywhere on its own chord
-    arc = curve.radius if len(curve.on_arcs(true)) else 0.0
-    chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
-    reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-    return method.local_cage(polygon, hand, true, reach, turn)
+class _Solved(NamedTuple):
+    """What was found round the target on one polygon, and its levels solved on the true curve."""
+
+    local_cage: LocalCage
+    cage: Cage
+    levels: TrueLevels
+    through: FloatArray
+    """(k, 2) contacts on arcs that the polygon was drawn through."""
 
 
-def _solved_inner(
-    curve: TrueCurve, features: CurveFeatures, hand: HandShape, contacts: FloatArray,
-    true: FloatArray, target: Critical | None, method: Method, segments: int,
-) -> _Inner | Cage | None:  # fmt: skip
-    """The inner polygon through the contacts of its own punctures, or what ends the matter."""
-    through = curve.on_arcs(true)
-    sagitta = curve.sagitta(segments)
-    found: _Inner | None = None
-    last: tuple[float | None, ...] = ()
-    for _ in range(_ROUNDS):
-        polygon = curve.inner(segments, through)
-        local_cage = _local_cage(polygon, curve, hand, true, segments, method)
+@dataclass(frozen=True, slots=True)
+class _Polygons:
+    """The polygons of one resolution that stand in for the true curve."""
+
+    curve: TrueCurve
+    features: CurveFeatures
+    method: Method
+    contacts: FloatArray
+    true: FloatArray
+    target: Critical | None
+    segments: int
+
+    def outer_levels(self) -> _Solved | None:
+        """The levels from the tangents through the target; None if these do not hold it."""
+        through = self.curve.on_arcs(self.true)
+        local_cage = self._local_cage(self._outer_polygon(through))
         if local_cage is None:
-            if target is not None:
-                return None
-            cage = method.cage(polygon, hand, contacts, curve.outline, curve.radius)
-            return replace(cage, contacts=contacts)
-        cage = local_cage.cage(contacts, curve.outline, curve.radius)
+            return None
+        cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
         if cage.status == "not_a_cage":
-            return replace(cage, contacts=contacts)
-        if cage.work is not None:
-            cage = replace(cage, work=replace(cage.work, sagitta=sagitta))
-        levels = true_levels(features, cage, sagitta, target)
-        found = _Inner(cage, levels, through, segments)
-        new = _not_yet(curve.on_arcs(_puncture_contacts(levels)), through, features.size)
-        solved = (levels.sigma_first, levels.sigma_max)
-        if not len(new) or _same(last, solved):  # other punctures of the same levels: symmetry
-            break
-        last = solved
-        through = np.vstack([through, new])
-    return found
+            return None
+        return self._solved(local_cage, cage, through)
+
+    def inner_levels(self, outer: _Solved | None) -> _Solved | Cage | None:
+        """The levels from chords through the contacts of their own punctures.
+
+        A cage, or rather none, if that ends the matter; None if only finer polygons can tell.
+        """
+        through = self.curve.on_arcs(self.true)
+        if outer is not None:
+            through = np.vstack([through, self._new_on_arcs(outer.levels, through)])
+        found: _Solved | None = None
+        last: tuple[float | None, ...] = ()
+        for _ in range(_ROUNDS):
+            polygon = self.curve.inner(self.segments, through)
+            local_cage = self._local_cage(polygon)
+            if local_cage is None:
+                if self.target is not None:
+                    return None
+                hand, curve = self.features.hand, self.curve
+                cage = self.method.cage(polygon, hand, self.contacts, curve.outline, curve.radius)
+                return replace(cage, contacts=self.contacts)
+            cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
+            if cage.status == "not_a_cage":
+                return replace(cage, contacts=self.contacts)
+            found = self._solved(local_cage, cage, through)
+            new = self._new_on_arcs(found.levels, through)
+            solved = (found.levels.sigma_first, found.levels.sigma_max)
+            if not len(new) or _same(last, solved):  # other punctures of the same levels: symmetry
+                break
+            last = solved
+            through = np.vstack([through, new])
+        return found
+
+    def enclosed(self, coarse: _Solved | None, inner: _Solved) -> Cage | None:
+        """The cage of the solved levels, if both polygons agree to it and enclose it; else None."""
+        cage, levels = inner.cage, inner.levels
+        if coarse is None or not (levels.first_solved and levels.max_solved):
+            return None
+        if not _same((levels.sigma_first,), (coarse.levels.sigma_first,)):
+            return None
+        outer: LocalCage | None = coarse.local_cage
+        if len(inner.through) > len(coarse.through):
+            outer = self._local_cage(self._outer_polygon(inner.through))
+        if outer is None:
+            return None
+        low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
+        if low is None or solved is None:
+            return None if np.isfinite(high) else self._finished(inner, None, None)
+        if not np.isfinite(high) or high / low - 1.0 > SIGMA_MAX_GAP:
+            return None
+        if not low * (1.0 - _INSIDE) <= solved <= high * (1.0 + _INSIDE):
+            return None
+        if solved / levels.sigma_0 - 1.0 < NOT_A_CAGE:
+            why = f"too shallow to tell: sigma_max / sigma_0 is at most {high / levels.sigma_0:.9g}"
+            outline, radius = self.curve.outline, self.curve.radius
+            return not_a_cage(outline, self.features.hand, self.contacts, why, radius)
+        return self._finished(inner, max(high, solved), outer)
+
+    def _finished(self, inner: _Solved, upper: float | None, outer: LocalCage | None) -> Cage:
+        cage, levels = inner.cage, inner.levels
+        target = levels.grasps[0].contacts
+        path, gap = cage.escape_path, cage.min_finger_gap
+        way = None if outer is None else outer.escape_path()
+        if way is not None:
+            path = np.vstack([levels.grasps[0].placement.as_array(), way[0]])
+            gap = least_gap_on(cage.hand, path)
+        work = cage.work
+        if work is not None:
+            work = replace(
+                work,
+                minimum_node=tuple(work.minimum_node[k] for k in levels.origin),
+                polygon_first=cage.sigma_first,
+                sagitta=self.curve.sagitta(self.segments),
+            )
+        return replace(
+            cage,
+            contacts=target,
+            sigma_0=levels.sigma_0,
+            sigma_first=levels.sigma_first,
+            sigma_max=levels.sigma_max,
+            sigma_max_lower=cage.sigma_max,
+            sigma_max_upper=upper,
+            sigma_first_upper=levels.sigma_first,
+            sigma_first_converged=True,
+            adjusted_by=float(np.hypot(*(target - self.contacts).T).max()),
+            punctures=levels.punctures,
+            grasps=levels.grasps,
+            escape_path=path,
+            min_finger_gap=gap,
+            warnings=_warnings(self.curve, levels),
+            work=work,
+        )
+
+    def _local_cage(self, polygon: Outline) -> LocalCage | None:
+        # on chords a contact of an arc may rest anywhere on its own chord
+        arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
+        chord = 2.0 * arc * 0.5 * np.pi / self.segments / polygon.diameter
+        reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
+        return self.method.local_cage(polygon, self.features.hand, self.true, reach, turn)
+
+    def _outer_polygon(self, through: FloatArray) -> Outline:
+        """Tangents through these contacts; where two of them cross, the union of them all."""
+        curve = self.curve
+        try:
+            return curve.outer(self.segments, through)
+        except GeometryError:
+            arcs = directions_on_arcs(curve.outline, curve.radius, through)
+            return offsets(curve.outline, curve.radius, self.segments, arcs).outer
+
+    def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> _Solved:
+        levels = true_levels(self.features, cage, self.curve.sagitta(self.segments), self.target)
+        return _Solved(local_cage, cage, levels, through)
+
+    def _new_on_arcs(self, levels: TrueLevels, through: FloatArray) -> FloatArray:
+        """Contacts (k, 2) on arcs of the first and the last puncture that are not yet in it."""
+        ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
+        kept: list[FloatArray] = list(through)
+        for point in self.curve.on_arcs(np.vstack([self.true, *(p.contacts for p in ends)])):
+            if all(np.hypot(*(point - q)) > _THROUGH * self.features.size for q in kept):
+                kept.append(point)
+        return np.array(kept[len(through) :]).reshape(-1, 2)
 
 
 def _same(before: tuple[float | None, ...], now: tuple[float | None, ...]) -> bool:
-    """Whether the levels of two polygons are the same."""
+    """Whether two polygons have led to the same levels."""
     return len(before) == len(now) and all(
         a == b or (a is not None and b is not None and abs(a / b - 1.0) <= _INSIDE)
         for a, b in zip(before, now, strict=True)
     )
-
-
-def _puncture_contacts(levels: TrueLevels) -> FloatArray:
-    """Finger centres (k, 2) of the first and of the last puncture."""
-    ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
-    return np.vstack([p.contacts for p in ends]) if ends else np.zeros((0, 2))
-
-
-def _not_yet(points: FloatArray, through: FloatArray, size: float) -> FloatArray:
-    """Those of the points (k, 2) that are none of ``through`` (m, 2)."""
-    kept: list[FloatArray] = list(through)
-    for p in points:
-        if all(np.hypot(*(p - q)) > _THROUGH * size for q in kept):
-            kept.append(p)
-    return np.array(kept[len(through) :]).reshape(-1, 2)
-
-
-def _enclosed(
-    curve: TrueCurve, hand: HandShape, contacts: FloatArray, true: FloatArray, inner: _Inner,
-    method: Method,
-) -> Cage | None:  # fmt: skip
-    """The cage of the solved levels, if an outer polygon and the inner one enclose them."""
-    cage, levels = inner.cage, inner.levels
-    if not levels.first_solved or not levels.max_solved:
-        return None
-    polygon = _outer_polygon(curve, inner)
-    outer = _local_cage(polygon, curve, hand, true, inner.segments, method)
-    if outer is None:
-        return None
-    low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
-    path, gap = cage.escape_path, cage.min_finger_gap
-    if low is None or solved is None:
-        if np.isfinite(high):
-            raise GeometryError("an outer polygon lets the object go that an inner one holds")
-    else:
-        if not np.isfinite(high) or low > high * (1.0 + _INSIDE):
-            return None
-        if not low * (1.0 - _INSIDE) <= solved <= high * (1.0 + _INSIDE):
-            return None
-        if high / low - 1.0 > SIGMA_MAX_GAP:
-            return None
-        if solved / levels.sigma_0 - 1.0 < NOT_A_CAGE:
-            why = no_depth_reason(solved / levels.sigma_0)
-            return not_a_cage(curve.outline, hand, contacts, why, curve.radius)
-        way = outer.escape_path()
-        if way is not None:
-            path = np.vstack([levels.grasps[0].placement.as_array(), way[0]])
-            gap = least_gap_on(cage.hand, path)
-        high = max(high, solved)
-    return replace(
-        cage,
-        contacts=levels.grasps[0].contacts,
-        sigma_0=levels.sigma_0,
-        sigma_first=levels.sigma_first,
-        sigma_max=solved,
-        sigma_max_lower=low,
-        sigma_max_upper=None if solved is None else high,
-        sigma_first_upper=levels.sigma_first,
-        sigma_first_converged=True,
-        adjusted_by=float(np.hypot(*(levels.grasps[0].contacts - contacts).T).max()),
-        punctures=levels.punctures,
-        grasps=levels.grasps,
-        escape_path=path,
-        min_finger_gap=gap,
-        warnings=_warnings(curve, levels),
-        work=None
-        if cage.work is None
-        else replace(
-            cage.work,
-            minimum_node=tuple(cage.work.minimum_node[k] for k in levels.origin),
-            polygon_first=cage.sigma_first,
-        ),
-    )
-
-
-def _outer_polygon(curve: TrueCurve, inner: _Inner) -> Outline:
-    """Tangents through the same contacts; where two of them cross, the union of them all."""
-    try:
-        return curve.outer(inner.segments, inner.through)
-    except GeometryError:
-        arcs = directions_on_arcs(curve.outline, curve.radius, inner.through)
-        return offsets(curve.outline, curve.radius, inner.segments, arcs).outer
 
 
 def _warnings(curve: TrueCurve, levels: TrueLevels) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The levels of a cage found on an inner polygon, solved on the true curve.
+"""The levels of a cage found on a polygon, solved on the true curve.
 
 The polygon tells which minima and punctures there are and which features touch at each; every one
 of them is then solved as a critical hand of the true curve. A minimum that only chords have is
@@ -21,6 +21,9 @@ from icage.tolerance import DEPTH_CUT, DEPTH_ROUGH, LEVEL
 _SAME = 1e-7
 """[diameter] Two solved minima whose fingers are this near are one."""
 
+_FAR = 0.05
+"""[1] A solved puncture whose level is further (relative) from the polygon's is another one."""
+
 _NEAR = 2.0
 """[sagitta] Features that a finger of the polygon's hand is this near to touching are tried."""
 
@@ -31,7 +34,7 @@ class TrueLevels:
 
     ``sigma_first`` and ``sigma_max`` [unit] are None where nothing is joined or the hand never
     escapes. ``first_solved`` and ``max_solved`` say whether they are solved on the true curve; a
-    level that is not is the polygon's. ``unsolved`` are ids of grasps that are not, ``origin`` holds
+    level that is not is the polygon's. ``unsolved`` are ids of grasps that are not, ``origin`` has
     for each grasp the id of the polygon's grasp that led to it.
     """
 
@@ -51,17 +54,17 @@ class TrueLevels:
 def true_levels(
     features: CurveFeatures, cage: Cage, sagitta: float, target: Critical | None = None
 ) -> TrueLevels:
-    """The levels on the true curve of a cage that a method has found on an inner polygon.
+    """The levels on the true curve of a cage that a method has found on a polygon.
 
     Parameters
     ----------
     features:
         Of the outline, the radius and the hand of the cage.
     cage:
-        What ``LocalCage.cage`` gives for an inner polygon: by either method, status not
+        What ``LocalCage.cage`` gives for an inner or outer polygon: by either method, status not
         ``not_a_cage``.
     sagitta:
-        [unit] How far the polygon lies inside the true curve at most.
+        [unit] How far the polygon lies off the true curve at most.
     target:
         The target on the true curve, where it is known.
 
@@ -142,7 +145,7 @@ class _Solving:
 
     def _puncture(self, puncture: Puncture) -> tuple[Puncture, bool]:
         found = self._features.puncture(puncture.contacts, self._reach)
-        if found is None or found.sigma < puncture.sigma * (1.0 - LEVEL):
+        if found is None or abs(found.sigma / puncture.sigma - 1.0) > _FAR:
             return puncture, False
         return replace(
             puncture,
