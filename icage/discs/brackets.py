@@ -187,7 +187,7 @@ def _bracketed(
         sigma_first_upper=_finite(first_upper),
         sigma_first_converged=converged,
         adjusted_by=float(np.hypot(*(grasps[0].contacts - contacts).T).max()),
-        punctures=_punctures(cage, first),
+        punctures=_punctures(cage, first, _first_contacts(local_cages, cage, first)),
         grasps=grasps,
         escape_path=path,
         min_finger_gap=gap,
@@ -220,22 +220,34 @@ def _on_true_curve(cage: Cage, true: FloatArray) -> tuple[GraspMinimum, ...]:
     return tuple(grasps)
 
 
-def _punctures(cage: Cage, first: float) -> tuple[Puncture, ...]:
-    """The punctures of the basis polygon, the first of them at sigma_first."""
+def _first_contacts(local_cages: list[ArcLocalCage], cage: Cage, first: float) -> FloatArray | None:
+    """Contacts (3, 2) of the first puncture of the polygon whose sigma_first is taken."""
+    for local_cage in local_cages:
+        if local_cage.sigma_first == first:
+            own = local_cage.local_cage.cage(cage.contacts, cage.outline, cage.finger_radius)
+            return own.punctures[0].contacts if own.punctures else None
+    return None
+
+
+def _punctures(cage: Cage, first: float, contacts: FloatArray | None) -> tuple[Puncture, ...]:
+    """The punctures of the basis polygon, the first of them at sigma_first on these contacts."""
     head = cage.punctures[0] if cage.punctures else None
     if head is None or not np.isfinite(first):
         return cage.punctures
     if abs(head.sigma / first - 1.0) <= SIGMA_FIRST_SPREAD and head.kind == "intermediate":
-        return (replace(head, sigma=first), *cage.punctures[1:])
+        at = head.contacts if contacts is None else contacts
+        return (replace(head, sigma=first, contacts=at), *cage.punctures[1:])
     if head.sigma <= first * (1.0 + 2.0 * LEVEL):
         return cage.punctures
-    return (replace(head, sigma=first, kind="intermediate", joins=()), *cage.punctures)
+    at = head.contacts if contacts is None else contacts
+    new = replace(head, sigma=first, kind="intermediate", joins=(), contacts=at)
+    return (new, *cage.punctures)
 
 
 def _warnings(
     local_cages: list[ArcLocalCage], low: float, high: float, converged: bool, closed: int
 ) -> tuple[str, ...]:
-    told: list[str] = []
+    told = ["the levels are those of polygons, not solved on the true curve"]
     if closed:
         told.append(f"the finger's radius closes {closed} pocket(s) of the outline")
     if not (low == high or high / low - 1.0 < SIGMA_MAX_GAP):

@@ -157,7 +157,7 @@ class CurveFeatures:
             return None
         gaps, normals = self._gaps(v, near)
         slope = self._slopes(near, normals)
-        force, _ = nnls(slope.T, np.array([0.0, 0.0, v[2], v[3]]))
+        force, _ = _pushing(slope.T, np.array([0.0, 0.0, v[2], v[3]]))
         along = _free_directions(slope[force > _PUSHES * force.max()])
         if not len(along):
             return None
@@ -235,7 +235,7 @@ class CurveFeatures:
         if len({f.finger for f in near}) < 2:
             return None
         gaps, normals = self._gaps(start, near)
-        force, _ = nnls(self._slopes(near, normals).T, np.array([0.0, 0.0, start[2], start[3]]))
+        force, _ = _pushing(self._slopes(near, normals).T, np.array([0.0, 0.0, start[2], start[3]]))
         likely = [f for f, x in zip(near, force, strict=True) if x > _PUSHES * force.max()]
         touched = [f for f, g in zip(near, gaps, strict=True) if g < 1e-7]
         for features in (likely, touched):
@@ -339,7 +339,7 @@ class CurveFeatures:
             return [*features, deepest]
         weak = int(np.argmin(force))
         if force[weak] < -_PUSHES * float(np.abs(force).max()):
-            _, miss = nnls(
+            _, miss = _pushing(
                 self._slopes(features, self._gaps(v, features)[1]).T,
                 np.array([0.0, 0.0, v[2], v[3]]),
             )
@@ -369,7 +369,7 @@ class CurveFeatures:
         """What the hand is, if its forces balance pushing and it is of the wanted kind."""
         gaps, normals = self._gaps(v, features)
         slope = self._slopes(features, normals)
-        force, miss = nnls(slope.T, np.array([0.0, 0.0, v[2], v[3]]))
+        force, miss = _pushing(slope.T, np.array([0.0, 0.0, v[2], v[3]]))
         if miss > _BALANCED * np.hypot(v[2], v[3]):
             return None
         pushing = force > _PUSHES * force.max()
@@ -409,9 +409,11 @@ class CurveFeatures:
         # x = (step - aim) / scale: least |x| with g (aim + scale x) + gap >= 0
         g = table[:, :4] * scale
         h = -(table[:, 4] + table[:, :4] @ aim)
-        u, miss = nnls(np.vstack([g.T, h]), np.array([0.0, 0.0, 0.0, 0.0, 1.0]))
+        u, miss = _pushing(np.vstack([g.T, h]), np.array([0.0, 0.0, 0.0, 0.0, 1.0]))
         if miss < 1e-14:
             return None
+        if not len(u):
+            return None  # nothing is near: the hand closes to a point
         r = np.vstack([g.T, h]) @ u - np.array([0.0, 0.0, 0.0, 0.0, 1.0])
         step = aim + scale * (-r[:4] / r[4])
         longest = float(np.hypot(*(self._maps @ step).T).max())
@@ -422,3 +424,14 @@ def _free_directions(slopes: FloatArray) -> FloatArray:
     """Unit directions (k, 4) along which none of the gaps with these slopes (m, 4) changes."""
     _, size, right = np.linalg.svd(slopes)
     return np.asarray(right[int((size > 1e-9 * size[0]).sum()) :])
+
+
+def _pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]:
+    """Forces >= 0 (k,) whose sum over columns (m, k) comes nearest to a vector, and the miss."""
+    if not columns.shape[1]:  # scipy 1.17.1 corrupts its memory when there is no column
+        return np.zeros(0), float(np.linalg.norm(wanted))
+    try:
+        found, miss = nnls(columns, wanted)
+    except RuntimeError:  # too many steps: as good as unbalanced
+        return np.zeros(columns.shape[1]), float(np.linalg.norm(wanted))
+    return np.asarray(found), float(miss)

@@ -110,10 +110,11 @@ class TrueCurve:
         that point lies over the middle of a short chord and the others are graded.
         """
         rows: list[FloatArray] = []
-        for e in self.elements:
+        wanted = self._on_elements(through)
+        for k, e in enumerate(self.elements):
             rows.append(e.first[None])
             if e.turn:
-                at = self._stops(e, segments, through)[1:-1]
+                at = _stops(e.turn, segments, wanted.get(k, []))[1:-1]
                 rows.append(self.ring[e.number] + self.radius * _unit(e.angle + at))
         return Outline.computed(np.vstack(rows))
 
@@ -126,10 +127,11 @@ class TrueCurve:
             The tangents of two arcs run into each other: more segments are needed.
         """
         rows: list[FloatArray] = []
-        for e in self.elements:
+        wanted = self._on_elements(through)
+        for k, e in enumerate(self.elements):
             rows.append(e.first[None])
             if e.turn:
-                at = self._stops(e, segments, through, touched=True)
+                at = _stops(e.turn, segments, wanted.get(k, []), touched=True)
                 step = np.diff(at)
                 reach = self.radius / np.cos(0.5 * step)
                 way = _unit(e.angle + at[:-1] + 0.5 * step)
@@ -141,14 +143,12 @@ class TrueCurve:
 
     def sagitta(self, segments: int) -> float:
         """Most that the inner polygon may lie inside the curve, [unit]."""
-        widest = max(
-            (self._stops(e, segments, None)[1] for e in self.elements if e.turn), default=0.0
-        )
-        return self.radius * (1.0 - math.cos(0.5 * float(widest)))
+        steps = [float(_stops(e.turn, segments, [])[1]) for e in self.elements if e.turn]
+        return self.radius * (1.0 - math.cos(0.5 * max(steps, default=0.0)))
 
     def on_arcs(self, contacts: FloatArray) -> FloatArray:
         """Those of the points (k, 2) that are on an arc."""
-        on = [p for p in contacts if any(self._along(e, p) is not None for e in self.elements)]
+        on = [p for p in contacts if self._on_elements(p[None])]
         return np.array(on).reshape(-1, 2)
 
     def distance(self, points: FloatArray) -> FloatArray:
@@ -168,45 +168,58 @@ class TrueCurve:
             least = np.minimum(least, near)
         return least
 
-    def _along(self, e: Element, point: FloatArray) -> float | None:
-        """Angle from the start of an arc at which a point is on it, or None."""
-        if not e.turn:
-            return None
-        x, y = point - self.ring[e.number]
-        if abs(math.hypot(x, y) - self.radius) > CONTACT_OFF * self.outline.diameter:
-            return None
-        t = (math.atan2(y, x) - e.angle) % (2.0 * math.pi)
-        return t if _NOTHING < t < e.turn - _NOTHING else None
+    def _on_elements(self, points: FloatArray | None) -> dict[int, list[float]]:
+        """Element -> angles from its start at which points (k, 2) are on it, of the arcs."""
+        found: dict[int, list[float]] = {}
+        if points is None:
+            return found
+        near = CONTACT_OFF * self.outline.diameter
+        for x, y in points.tolist():
+            far = np.hypot(self.ring[:, 0] - x, self.ring[:, 1] - y)
+            for v in np.flatnonzero(np.abs(far - self.radius) <= near).tolist():
+                direction = math.atan2(y - self.ring[v, 1], x - self.ring[v, 0])
+                for k, e in enumerate(self.elements):
+                    if e.turn and e.number == v:
+                        t = (direction - e.angle) % (2.0 * math.pi)
+                        if _NOTHING < t < e.turn - _NOTHING:
+                            found.setdefault(k, []).append(t)
+        return found
 
-    def _stops(
-        self, e: Element, segments: int, through: FloatArray | None, *, touched: bool = False
-    ) -> FloatArray:
-        """Angles from 0 to the turn of an arc that split it, at the contacts too if ``touched``."""
-        coarse = 0.5 * math.pi / segments
-        wanted = [] if through is None else [self._along(e, p) for p in through]
-        resting = sorted({t for t in wanted if t is not None})
-        stops = [0.0, e.turn]
-        for k, t in enumerate(resting):
-            room = [abs(t - u) / 3.0 for u in resting[max(0, k - 1) : k + 2] if u != t]
-            half = min([_RESTING, t, e.turn - t, *room])
-            while half < coarse:
-                stops += [t - half, t + half]
-                half *= _GRADED
-        # a stop inside the resting chord of another contact would spoil it
-        kept = [
-            s
-            for s in sorted(set(stops))
-            if 0.0 <= s <= e.turn
-            and all(abs(s - t) >= 0.999 * min([_RESTING, t, e.turn - t]) or _own(s, t, resting)
-                    for t in resting)
-        ]  # fmt: skip
-        if touched:
-            kept = sorted({*kept, *resting})
-        angles = [0.0]
-        for low, high in pairwise(kept):
-            parts = max(1, math.ceil((high - low) / coarse - _WHOLE))
-            angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
-        return np.array(angles)
+
+def _stops(
+    turn: float, segments: int, contacts: list[float], *, touched: bool = False
+) -> FloatArray:
+    """Angles from 0 to ``turn`` that split an arc, at the contacts on it too if ``touched``.
+
+    Round every contact a short chord, then longer and longer ones up to the common length.
+    """
+    coarse = 0.5 * math.pi / segments
+    if not contacts:
+        return np.linspace(0.0, turn, max(1, math.ceil(turn / coarse - _WHOLE)) + 1)
+    resting = sorted(set(contacts))
+    stops = [0.0, turn]
+    for k, t in enumerate(resting):
+        room = [abs(t - u) / 3.0 for u in resting[max(0, k - 1) : k + 2] if u != t]
+        half = min([_RESTING, t, turn - t, *room])
+        while half < coarse:
+            stops += [t - half, t + half]
+            half *= _GRADED
+    # a stop inside the resting chord of another contact would spoil it
+    kept = [
+        s
+        for s in sorted(set(stops))
+        if 0.0 <= s <= turn
+        and all(
+            abs(s - t) >= 0.999 * min(_RESTING, t, turn - t) or _own(s, t, resting) for t in resting
+        )
+    ]
+    if touched:
+        kept = sorted({*kept, *resting})
+    angles = [0.0]
+    for low, high in pairwise(kept):
+        parts = max(1, math.ceil((high - low) / coarse - _WHOLE))
+        angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
+    return np.array(angles)
 
 
 def _own(stop: float, contact: float, resting: list[float]) -> bool:

@@ -183,7 +183,7 @@ class _Polygons:
             work = replace(
                 work,
                 minimum_node=tuple(work.minimum_node[k] for k in levels.origin),
-                polygon_first=cage.sigma_first,
+                polygon_first=np.inf if levels.polygon_first is None else levels.polygon_first,
                 sagitta=self.curve.sagitta(self.segments),
             )
         return replace(

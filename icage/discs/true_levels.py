@@ -49,6 +49,9 @@ class TrueLevels:
     origin: tuple[int, ...]
     rough_first: float | None
     """sigma_first if only minima counted that are deeper than 1e-6 of the diameter."""
+    polygon_first: float | None
+    """The polygon's own level of the puncture at sigma_first: below it the polygon joins to the
+    target only what the true curve does not tell from it."""
 
 
 def true_levels(
@@ -96,16 +99,19 @@ class _Solving:
         punctures: list[Puncture] = []
         solved: list[bool] = []
         last: tuple[Puncture, bool] | None = None
+        polygon_level: dict[float, float] = {}
         rough: list[float] = []
         for puncture in self._cage.punctures:
             if puncture.kind == "escape":
                 last = self._puncture(puncture)
+                polygon_level[last[0].sigma] = puncture.sigma
                 continue
             new = sorted({self._at[k] for k in puncture.joins} - joined)
             if not new:
                 continue
             joined |= set(new)
             found, is_solved = self._puncture(puncture)
+            polygon_level.setdefault(found.sigma, puncture.sigma)
             lowest = min(self._grasps[k].sigma for k in new)
             if found.sigma - lowest <= self._least_depth:
                 continue
@@ -117,7 +123,12 @@ class _Solving:
             solved.append(is_solved and any(k not in self._unsolved for k in deep))
         levels = self._settled(punctures, solved, last)
         ends = [] if levels.sigma_max is None else [levels.sigma_max]
-        return replace(levels, rough_first=min([*rough, *ends], default=None))
+        first = levels.sigma_first
+        return replace(
+            levels,
+            rough_first=min([*rough, *ends], default=None),
+            polygon_first=None if first is None else polygon_level[first],
+        )
 
     def _add(self, grasp: GraspMinimum, known: Critical | None) -> None:
         """Solve a grasp and give it its place, that of another one if they are the same."""
@@ -202,4 +213,5 @@ class _Solving:
             unsolved=tuple(number[p] for p in sorted(self._unsolved) if p in number),
             origin=tuple(self._origin[p] for p in kept),
             rough_first=None,
+            polygon_first=None,
         )
