@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import nnls
 
-from icage.arrays import FloatArray
+from icage.arrays import BoolArray, FloatArray
 from icage.geometry.exterior import without_straight_vertices
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
@@ -49,6 +49,9 @@ _SUBSETS = 40
 
 _DESCENT = 240
 """Steps of a descent along the true curve."""
+
+_NEARLY_BALANCED = 0.1
+"""[1] Residual of the forces, over the size of the hand, above which no minimum is near."""
 
 _STANDS = 1e-12
 """[diameter] A descent that closes by less in a step has come to rest."""
@@ -167,6 +170,50 @@ class CurveFeatures:
             return None
         way = ways[:, 0] @ along
         return np.asarray(way / float(np.hypot(*(self._maps @ way).T).max()))
+
+    def minima_near(self, hands: FloatArray, reach: float) -> list[Critical]:
+        """Minima (of any number) next to some of the hands (k, fingers, 2), ascending in sigma.
+
+        Of hands that touch the same features, to within ``reach`` [unit], only the smallest is
+        looked at, and Newton's method is tried where forces nearly balance.
+        """
+        at = (hands - self.origin) / self.size
+        rows = np.concatenate([at[:, 0], at[:, 1] - at[:, 0]], axis=1)
+        order = np.argsort(np.hypot(rows[:, 2], rows[:, 3]), kind="stable")
+        touched = self._touched(at[order], reach / self.size)
+        _, first = np.unique(touched, axis=0, return_index=True)
+        found: list[Critical] = []
+        for k in np.sort(first).tolist():
+            v = rows[order[k]]
+            near = self._named(touched[k])
+            if len({f.finger for f in near}) < 2:
+                continue
+            slope = self._slopes(near, self._gaps(v, near)[1])
+            _, miss = _pushing(slope.T, np.array([0.0, 0.0, v[2], v[3]]))
+            if miss <= _NEARLY_BALANCED * np.hypot(v[2], v[3]):
+                one = self._solve(self._as_contacts(v), reach, 0)
+                if one is not None:
+                    found.append(one)
+        return sorted(found, key=lambda one: one.sigma)
+
+    def _touched(self, at: FloatArray, reach: float) -> BoolArray:
+        """Which features hands (k, fingers, 2) nearly touch, (k, fingers x edges and vertices)."""
+        off = at[:, :, None] - self._ring
+        along = (off * self._way).sum(axis=3)
+        gap = (off * self._out).sum(axis=3) - self._r
+        edges = (np.abs(gap) <= reach) & (along >= 0.0) & (along <= self._length)
+        far = np.hypot(off[..., 0], off[..., 1])
+        before = np.roll(along - self._length, 1, axis=2)
+        arcs = (np.abs(far - self._r) <= reach) & self._convex & (along <= 0.0) & (before >= 0.0)
+        return np.concatenate([edges, arcs], axis=2).reshape(len(at), -1)
+
+    def _named(self, touched: BoolArray) -> list[Feature]:
+        """The features of a row of ``_touched``."""
+        n = len(self._ring)
+        return [
+            Feature(k // (2 * n), k % n, bool(k % (2 * n) >= n))
+            for k in np.flatnonzero(touched).tolist()
+        ]
 
     def free_fingers(self, contacts: FloatArray) -> tuple[int, ...]:
         """Fingers (1..) of contacts (fingers, 2) that touch nothing."""

@@ -21,8 +21,9 @@ from icage.cage import Cage, not_a_cage
 from icage.discs.brackets import plan_by_resolutions
 from icage.discs.critical import Critical, CurveFeatures
 from icage.discs.curve import TrueCurve
+from icage.discs.hidden import hidden_minima
 from icage.discs.offsets import check_disc_contacts, directions_on_arcs, offsets
-from icage.discs.true_levels import TrueLevels, true_levels
+from icage.discs.true_levels import REACH, TrueLevels, true_levels
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
@@ -39,6 +40,13 @@ _ROUNDS = 4
 
 _THROUGH = 1e-6
 """[diameter] A polygon goes through a contact if it was drawn through a point this near to it."""
+
+_TIGHT = 1e-6
+"""[1] Where a polygon's level is further (relative) from that of its puncture on the true curve,
+another puncture may lie between; below it only if not every polygon leads to the same levels."""
+
+_SAME = 1e-7
+"""[diameter] Two minima whose fingers are this near are one."""
 
 _INSIDE = 1e-9
 """[1] A solved level may be this little (relative) outside its bracket: rounding."""
@@ -82,13 +90,17 @@ def _target(features: CurveFeatures, contacts: FloatArray) -> Critical | None:
 
 
 class _Solved(NamedTuple):
-    """What was found round the target on one polygon, and its levels solved on the true curve."""
+    """What was found round the target on one polygon, and its levels solved on the true curve.
+
+    ``again`` says whether another polygon before it had led to the same levels.
+    """
 
     local_cage: LocalCage
     cage: Cage
     levels: TrueLevels
     through: FloatArray
     """(k, 2) contacts on arcs that the polygon was drawn through."""
+    again: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,9 +115,10 @@ class _Polygons:
     target: Critical | None
     segments: int
 
-    def outer_levels(self) -> _Solved | None:
+    def outer_levels(self, through: FloatArray | None = None) -> _Solved | None:
         """The levels from the tangents through the target; None if these do not hold it."""
-        through = self.curve.on_arcs(self.true)
+        if through is None:
+            through = self.curve.on_arcs(self.true)
         local_cage = self._local_cage(self._outer_polygon(through))
         if local_cage is None:
             return None
@@ -121,7 +134,7 @@ class _Polygons:
         """
         through = self.curve.on_arcs(self.true)
         if outer is not None:
-            through = np.vstack([through, self._new_on_arcs(outer.levels, through)])
+            through = np.vstack([through, self._new_on_arcs(outer, through)])
         found: _Solved | None = None
         last: tuple[float | None, ...] = ()
         for _ in range(_ROUNDS):
@@ -137,9 +150,12 @@ class _Polygons:
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
             found = self._solved(local_cage, cage, through)
-            new = self._new_on_arcs(found.levels, through)
+            new = self._new_on_arcs(found, through)
             solved = (found.levels.sigma_first, found.levels.sigma_max)
-            if not len(new) or _same(last, solved):  # other punctures of the same levels: symmetry
+            if _same(last, solved):  # other punctures of the same levels: symmetry
+                found = found._replace(again=True)
+                break
+            if not len(new):
                 break
             last = solved
             through = np.vstack([through, new])
@@ -151,16 +167,26 @@ class _Polygons:
         if coarse is None or not (levels.first_solved and levels.max_solved):
             return None
         if not _same((levels.sigma_first,), (coarse.levels.sigma_first,)):
-            return None
+            coarse = self.outer_levels(inner.through)
+            if coarse is None or not _same((levels.sigma_first,), (coarse.levels.sigma_first,)):
+                return None
+        wide = SIGMA_MAX_GAP if inner.again else _TIGHT
+        if not (
+            _near(cage.sigma_max, levels.sigma_max, wide)
+            and _near(levels.polygon_first, levels.sigma_first, wide)
+        ):
+            return None  # another puncture may be as near
         outer: LocalCage | None = coarse.local_cage
-        if len(inner.through) > len(coarse.through):
+        if len(inner.through) > len(coarse.through) and not _near(
+            outer.sigma_max, levels.sigma_max, _TIGHT
+        ):
             outer = self._local_cage(self._outer_polygon(inner.through))
         if outer is None:
             return None
         low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
         if low is None or solved is None:
             return None if np.isfinite(high) else self._finished(inner, None, None)
-        if not np.isfinite(high) or high / low - 1.0 > SIGMA_MAX_GAP:
+        if not (np.isfinite(high) and _near(high, solved, _TIGHT)):
             return None
         if not low * (1.0 - _INSIDE) <= solved <= high * (1.0 + _INSIDE):
             return None
@@ -225,21 +251,37 @@ class _Polygons:
         levels = true_levels(self.features, cage, self.curve.sagitta(self.segments), self.target)
         return _Solved(local_cage, cage, levels, through)
 
-    def _new_on_arcs(self, levels: TrueLevels, through: FloatArray) -> FloatArray:
-        """Contacts (k, 2) on arcs of the first and the last puncture that are not yet in it."""
+    def _new_on_arcs(self, found: _Solved, through: FloatArray) -> FloatArray:
+        """Contacts (k, 2) on arcs that the polygons are to be drawn through and were not.
+
+        Those of the first and of the last puncture, and of minima that the polygon hides.
+        """
+        levels = found.levels
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
+        wanted = [self.true, *(p.contacts for p in ends)]
+        reach = REACH * self.curve.sagitta(self.segments)
+        near = _SAME * self.features.size
+        for one in hidden_minima(self.features, found.cage, reach):
+            if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):
+                wanted.append(one.contacts)
         kept: list[FloatArray] = list(through)
-        for point in self.curve.on_arcs(np.vstack([self.true, *(p.contacts for p in ends)])):
+        for point in self.curve.on_arcs(np.vstack(wanted)):
             if all(np.hypot(*(point - q)) > _THROUGH * self.features.size for q in kept):
                 kept.append(point)
         return np.array(kept[len(through) :]).reshape(-1, 2)
 
 
+def _near(level: float | None, other: float | None, gap: float) -> bool:
+    """Whether two levels, or none, are this near (relative)."""
+    if level is None or other is None:
+        return level == other
+    return abs(level / other - 1.0) <= gap
+
+
 def _same(before: tuple[float | None, ...], now: tuple[float | None, ...]) -> bool:
     """Whether two polygons have led to the same levels."""
     return len(before) == len(now) and all(
-        a == b or (a is not None and b is not None and abs(a / b - 1.0) <= _INSIDE)
-        for a, b in zip(before, now, strict=True)
+        _near(a, b, _INSIDE) for a, b in zip(before, now, strict=True)
     )
 
 

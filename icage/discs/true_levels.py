@@ -24,7 +24,7 @@ _SAME = 1e-7
 _FAR = 0.05
 """[1] A solved puncture whose level is further (relative) from the polygon's is another one."""
 
-_NEAR = 2.0
+REACH = 2.0
 """[sagitta] Features that a finger of the polygon's hand is this near to touching are tried."""
 
 
@@ -84,7 +84,7 @@ class _Solving:
         self._features = features
         self._cage = cage
         self._least_depth = DEPTH_CUT * features.size
-        self._reach = _NEAR * sagitta + 1e-7 * features.size
+        self._reach = REACH * sagitta + 1e-7 * features.size
         self._grasps: list[GraspMinimum] = []
         self._origin: list[int] = []
         self._unsolved: set[int] = set()
