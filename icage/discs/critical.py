@@ -106,6 +106,7 @@ class CurveFeatures:
         self._out = np.column_stack([self._way[:, 1], -self._way[:, 0]])
         back = np.roll(self._way, 1, axis=0)
         self._convex = back[:, 0] * self._way[:, 1] - back[:, 1] * self._way[:, 0] > 0.0
+        self._remembered: dict[tuple[frozenset[Feature], int], Critical] = {}
         # finger k = maps[k] v
         self._maps = np.array(
             [[[1.0, 0.0, z.real, -z.imag], [0.0, 1.0, z.imag, z.real]] for z in hand.z]
@@ -284,11 +285,19 @@ class CurveFeatures:
         gaps, normals = self._gaps(start, near)
         force, _ = _pushing(self._slopes(near, normals).T, np.array([0.0, 0.0, start[2], start[3]]))
         likely = [f for f, x in zip(near, force, strict=True) if x > _PUSHES * force.max()]
+        known = self._remembered.get((frozenset(likely), descending))
+        if known is not None:
+            moved = float(np.hypot(*(known.contacts - contacts).T).max())
+            if moved <= 0.5 * self._furthest(reach) * self.size:
+                return known
         touched = [f for f, g in zip(near, gaps, strict=True) if g < 1e-7]
         for features in (likely, touched):
             found = self._with_changes(start, features, reach, descending)
             if found is not None:
+                self._remembered[frozenset(likely), descending] = found
                 return found
+        if descending == 0:
+            return None  # a descent finds what features are missing
         tried = 0
         for count in (3, 2, 4):
             for chosen in combinations(near, count):

@@ -134,7 +134,7 @@ class _Polygons:
         """
         through = self.curve.on_arcs(self.true)
         if outer is not None:
-            through = np.vstack([through, self._new_on_arcs(outer, through)])
+            through = np.vstack([through, self._new_on_arcs(outer, through, hidden=True)])
         found: _Solved | None = None
         last: tuple[float | None, ...] = ()
         for _ in range(_ROUNDS):
@@ -251,17 +251,20 @@ class _Polygons:
         levels = true_levels(self.features, cage, self.curve.sagitta(self.segments), self.target)
         return _Solved(local_cage, cage, levels, through)
 
-    def _new_on_arcs(self, found: _Solved, through: FloatArray) -> FloatArray:
+    def _new_on_arcs(
+        self, found: _Solved, through: FloatArray, *, hidden: bool = False
+    ) -> FloatArray:
         """Contacts (k, 2) on arcs that the polygons are to be drawn through and were not.
 
-        Those of the first and of the last puncture, and of minima that the polygon hides.
+        Those of the first and of the last puncture, and, if ``hidden``, of minima that the
+        polygon hides.
         """
         levels = found.levels
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
         wanted = [self.true, *(p.contacts for p in ends)]
         reach = REACH * self.curve.sagitta(self.segments)
         near = _SAME * self.features.size
-        for one in hidden_minima(self.features, found.cage, reach):
+        for one in hidden_minima(self.features, found.cage, reach) if hidden else []:
             if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):
                 wanted.append(one.contacts)
         kept: list[FloatArray] = list(through)
