@@ -3,7 +3,7 @@
 Coarse polygons, an outer one (tangents) and an inner one (chords), name the minima and punctures;
 they are solved on the true curve; the inner polygon is drawn again through the contacts of its
 punctures, until no new ones appear. Chords or tangents alone can hide a shallow minimum, so
-sigma_first solved from either has to be the same. Then the escape levels of both polygons, drawn
+the levels solved from either have to be the same. Then the escape levels of both polygons, drawn
 through the same contacts, enclose the solved one. Where one of this fails finer polygons are tried,
 and what does not come out at all is left to ``icage.discs.brackets``, which says between which
 polygons' levels the truth lies. [docs/theory.md, Sec. 4]
@@ -42,8 +42,8 @@ _THROUGH = 1e-6
 """[diameter] A polygon goes through a contact if it was drawn through a point this near to it."""
 
 _TIGHT = 1e-6
-"""[1] Where a polygon's level is further (relative) from that of its puncture on the true curve,
-another puncture may lie between; below it only if not every polygon leads to the same levels."""
+"""[1] Where a polygon's level is lower by more (relative) than that of its puncture on the true
+curve, another puncture may lie between, unless polygon after polygon leads to the same levels."""
 
 _SAME = 1e-7
 """[diameter] Two minima whose fingers are this near are one."""
@@ -136,7 +136,7 @@ class _Polygons:
         if outer is not None:
             through = np.vstack([through, self._new_on_arcs(outer, through, hidden=True)])
         found: _Solved | None = None
-        last: tuple[float | None, ...] = ()
+        last: TrueLevels | None = None
         for _ in range(_ROUNDS):
             polygon = self.curve.inner(self.segments, through)
             local_cage = self._local_cage(polygon)
@@ -151,13 +151,13 @@ class _Polygons:
                 return replace(cage, contacts=self.contacts)
             found = self._solved(local_cage, cage, through)
             new = self._new_on_arcs(found, through)
-            solved = (found.levels.sigma_first, found.levels.sigma_max)
-            if _same(last, solved):  # other punctures of the same levels: symmetry
+            # other punctures of the same levels: symmetry
+            if last is not None and _agree(last, found.levels):
                 found = found._replace(again=True)
                 break
             if not len(new):
                 break
-            last = solved
+            last = found.levels
             through = np.vstack([through, new])
         return found
 
@@ -166,9 +166,9 @@ class _Polygons:
         cage, levels = inner.cage, inner.levels
         if coarse is None or not (levels.first_solved and levels.max_solved):
             return None
-        if not _same((levels.sigma_first,), (coarse.levels.sigma_first,)):
+        if not _agree(levels, coarse.levels):
             coarse = self.outer_levels(inner.through)
-            if coarse is None or not _same((levels.sigma_first,), (coarse.levels.sigma_first,)):
+            if coarse is None or not _agree(levels, coarse.levels):
                 return None
         wide = SIGMA_MAX_GAP if inner.again else _TIGHT
         if not (
@@ -186,7 +186,7 @@ class _Polygons:
         low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
         if low is None or solved is None:
             return None if np.isfinite(high) else self._finished(inner, None, None)
-        if not (np.isfinite(high) and _near(high, solved, _TIGHT)):
+        if not (np.isfinite(high) and _near(high, solved, SIGMA_MAX_GAP)):
             return None
         if not low * (1.0 - _INSIDE) <= solved <= high * (1.0 + _INSIDE):
             return None
@@ -281,10 +281,10 @@ def _near(level: float | None, other: float | None, gap: float) -> bool:
     return abs(level / other - 1.0) <= gap
 
 
-def _same(before: tuple[float | None, ...], now: tuple[float | None, ...]) -> bool:
+def _agree(one: TrueLevels, other: TrueLevels) -> bool:
     """Whether two polygons have led to the same levels."""
-    return len(before) == len(now) and all(
-        _near(a, b, _INSIDE) for a, b in zip(before, now, strict=True)
+    return _near(one.sigma_first, other.sigma_first, _INSIDE) and _near(
+        one.sigma_max, other.sigma_max, _INSIDE
     )
 
 
