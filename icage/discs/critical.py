@@ -38,6 +38,9 @@ _PUSHES = 1e-9
 _FLAT = 1e-7
 """[1] Curvature of sigma along the features below which a direction is level."""
 
+_ASLANT = 1e-6
+"""[1] A touched feature that a direction is inclined to by more is in its way."""
+
 _STEPS = 12
 """Newton steps; from a polygon's answer five are enough."""
 
@@ -431,16 +434,25 @@ class CurveFeatures:
         pushing = force > _PUSHES * force.max()
         along = _free_directions(slope[pushing])
         hessian = self._curvature(features, normals, force, gaps)
-        bend = np.linalg.eigvalsh(along @ hessian @ along.T) if len(along) else np.zeros(0)
+        bend, ways = np.linalg.eigh(along @ hessian @ along.T)
         down, level = int((bend < -_FLAT).sum()), int((np.abs(bend) <= _FLAT).sum())
         arcs = any(f.is_arc for f, p in zip(features, pushing, strict=True) if p)
         if down != descending and not (level and not arcs and down <= descending):
+            return None
+        # a puncture goes on to both sides, down or, between parallel edges, on the level first
+        if descending and self._is_blocked(v, ways[:, 0] @ along):
             return None
         if level and arcs:
             return None  # neither a minimum nor a puncture, to second order
         contacts = self._as_contacts(v)
         sigma = float(np.hypot(*(contacts[1] - contacts[0])))
         return Critical(contacts, sigma, tuple(features), down, level)
+
+    def _is_blocked(self, v: FloatArray, way: FloatArray) -> bool:
+        """Whether a feature that is touched, pushing or not, is in the way on one side or other."""
+        near = self._near(v, 10.0 * _TOUCHES)
+        slopes = self._slopes(near, self._gaps(v, near)[1])
+        return bool(np.abs(slopes @ way).max() > _ASLANT)
 
     # ------------------------------------------------------------------ descent
 
