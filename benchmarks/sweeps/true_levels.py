@@ -1,4 +1,4 @@
-r"""Discs on true curves against fine polygons: random targets, chords and tangents, radius 1 to 8 %.
+r"""Discs on true curves against fine polygons: random targets, radius 1 to 8 % of the diameter.
 
     python -m benchmarks.sweeps.true_levels --targets 330 --seed 23 \
         --json benchmarks/sweeps/true_levels.json
