@@ -17,6 +17,7 @@ from icage.cells.kernels.columns import (
     EDGE_FROM,
     EDGE_SLOT,
     EDGE_TO,
+    MERGE_EDGE,
     PASS_SIGMA,
     PASS_WX,
     PASS_WY,
@@ -26,7 +27,7 @@ from icage.cells.kernels.columns import (
 )
 from icage.cells.kernels.facet import ends_on_facet
 from icage.cells.kernels.search import explore
-from icage.cells.kernels.tree import births, merge
+from icage.cells.kernels.tree import merge, visited_births
 from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -209,13 +210,18 @@ def merge_tree(found: Search) -> Tree:
     """
     free_space = found.free_space
     inside = inside_cells(found)
-    born = births(
-        free_space.pieces, free_space.z, found.nodes[:inside], free_space.cap, free_space.worst
+    born = visited_births(
+        free_space.pieces, free_space.z, found.nodes[:inside], found.edges, found.edge_value,
+        free_space.cap, free_space.worst,
+    )  # fmt: skip
+    ends = found.edges[:, EDGE_FROM], found.edges[:, EDGE_TO]
+    below = below_escape(found)
+    sigma = found.edge_value[:, PASS_SIGMA]
+    used = np.flatnonzero(
+        (ends[0] < inside) & (ends[1] < inside) & (ends[1] >= 0) & (sigma < below)
     )
-    usable = (found.edges[:, EDGE_FROM] < inside) & (found.edges[:, EDGE_TO] < inside)
-    edges = np.where(usable[:, None], found.edges, -1)
-    value = np.where(usable, found.edge_value[:, PASS_SIGMA], np.inf)
-    joined = merge(born.value[:, BIRTH_SIGMA], edges, value, below_escape(found))
+    joined = merge(born.value[:, BIRTH_SIGMA].copy(), found.edges[used], sigma[used], below)
+    joined.merges[:, MERGE_EDGE] = used[joined.merges[:, MERGE_EDGE]]
     return Tree(
         birth=born.value,
         birth_at=born.where,

@@ -9,7 +9,16 @@ import numpy as np
 from icage.arrays import FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
-from icage.cells.kernels.columns import EDGE_FROM, NODE_EDGE, PASS_SIGMA, StartSide
+from icage.cells.kernels.columns import (
+    EDGE_FROM,
+    LOW_DEPTH,
+    LOW_LEVEL,
+    MERGE_SIDE,
+    NODE_EDGE,
+    PASS_SIGMA,
+    StartSide,
+)
+from icage.cells.kernels.tree import births
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
 from icage.geometry.way_out import corners_before_pinch
@@ -32,26 +41,24 @@ def joinings(tree: Tree, depth_cut: float) -> list[Joining]:
     """
     members: dict[int, list[int]] = {}
     met: list[Joining] = []
-    for (keep, lose, edge, side), (level, depth) in zip(
-        tree.merges.tolist(), tree.lows.tolist(), strict=True
+    # a shallow minimum holds no other: had it swallowed one, it would be deeper still
+    deep = tree.lows[:, LOW_DEPTH] > depth_cut
+    for (keep, lose, edge, side), level in zip(
+        tree.merges[deep].tolist(), tree.lows[deep, LOW_LEVEL].tolist(), strict=True
     ):
         kept = members.pop(keep, [keep])
         lost = members.pop(lose, [lose])
-        if depth > depth_cut:
-            if side != StartSide.NEITHER:
-                other = kept if side == StartSide.SWALLOWED else lost
-                met.append(Joining(level, edge, tuple(other)))
-            members[keep] = kept + lost
-        else:
-            # a shallow minimum holds no other: had it swallowed one, it would be deeper still
-            members[keep] = kept
+        if side != StartSide.NEITHER:
+            other = kept if side == StartSide.SWALLOWED else lost
+            met.append(Joining(level, edge, tuple(other)))
+        members[keep] = kept + lost
     return met
 
 
 def first_joining(tree: Tree, depth_cut: float, escape: float) -> float:
     """sigma_first for a given depth cut, [unit]."""
-    met = joinings(tree, depth_cut)
-    return met[0].sigma if met else escape
+    met = (tree.lows[:, LOW_DEPTH] > depth_cut) & (tree.merges[:, MERGE_SIDE] != StartSide.NEITHER)
+    return float(tree.lows[np.argmax(met), LOW_LEVEL]) if met.any() else escape
 
 
 def grasps_and_punctures(
@@ -103,8 +110,13 @@ def _target_grasp(free_space: FreeSpace, target: Target) -> GraspMinimum:
 def _grasp(
     free_space: FreeSpace, found: Search, tree: Tree, node: int, joined_at: float
 ) -> GraspMinimum:
-    sigma, wx, wy = tree.birth[node].tolist()
-    finger, slot = tree.birth_at[node].tolist()
+    # the least point of the cell by itself, whichever of several equal ones the tree has noted
+    born = births(
+        free_space.pieces, free_space.z, found.nodes[node : node + 1], free_space.cap,
+        free_space.worst,
+    )  # fmt: skip
+    sigma, wx, wy = born.value[0].tolist()
+    finger, slot = born.where[0].tolist()
     a, b = free_space.on_edge(found.cells[node], finger, slot, wx, wy)
     here = Configuration(0.5 * (a.d + b.d), a.w)
     plateau = plateau_through(free_space, here, sigma)

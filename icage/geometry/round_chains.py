@@ -4,12 +4,14 @@ Outside a convex polygon of n edges every convex piece touches one edge, so n pi
 a triangulation on the polygon's own vertices lets all of them reach far out, where a finger that
 touches nothing then counts n positions. Here some ten edges at a time get one point above them, the
 apex: a fan of thin triangles joins it to the edges, and a few large pieces do beyond. Any point
-outside the object will do, so the pieces stay exact. Our own. [docs/decisions/0009-round-objects.md]
+outside the object will do, so the pieces stay exact. Our own.
+[docs/decisions/0009-round-objects.md]
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,8 +27,8 @@ _MOST: Final = 12
 """The same on average: best between 300 and 600 edges, within a tenth from 9 to 15."""
 
 _SPREAD: Final = 0.4
-"""[_MOST, _WIDEST] Stretches are longer and shorter by up to this: were all alike, three fingers that are a
-whole number of stretches apart would come under their apexes together, in the most cells."""
+"""[_MOST, _WIDEST] Stretches are longer and shorter by up to this: were all alike, three fingers that
+are whole stretches apart would come under their apexes together, in the most cells."""
 
 _GOLDEN: Final = 0.6180339887498949
 """[1] Multiples of it modulo 1 are spread evenly and never repeat."""
@@ -152,7 +154,7 @@ def _apex(ring: FloatArray, first: int, last: int) -> Point | None:
     foot = 0.5 * (a_end + b)
     x, y = (foot + _LIFT * (a_end + reach * along - foot)).tolist()
     points: list[Point] = [(u, v) for u, v in ring[np.arange(first, last + 2) % n].tolist()]
-    sees = all(orientation(q, p, (x, y)) > 0 for p, q in zip(points[:-1], points[1:], strict=True))
+    sees = all(orientation(q, p, (x, y)) > 0 for p, q in pairwise(points))
     return (x, y) if sees else None
 
 

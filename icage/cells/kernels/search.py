@@ -29,7 +29,8 @@ from icage.cells.kernels.columns import (
     RECORD_NODE,
     Ending,
 )
-from icage.cells.kernels.facet import facet_of, finger_on_segment, new_room, pass_value
+from icage.cells.kernels.facet import facet_of, finger_on_segment
+from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import (
@@ -138,6 +139,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
     """
     m = len(pieces.ptr) - 1
     room = new_room()
+    barred = np.zeros(3, np.int64)
     nodes = np.empty((256, 4), np.int64)
     node_level = np.empty((256, 1))
     edges = np.empty((1024, 5), np.int64)
@@ -186,7 +188,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit):
             ends = finger_on_segment(pieces, z, facet, wx, wy, room.base)
             dx = 0.5 * (ends.x_lo + ends.x_hi) - wx * z[finger, 0] + wy * z[finger, 1]
             dy = 0.5 * (ends.y_lo + ends.y_hi) - wx * z[finger, 1] - wy * z[finger, 0]
-            standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale)
+            standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale, barred)
             if standing >= 0:
                 outcome = ESCAPED
                 break
