@@ -81,6 +81,7 @@ def facet_of(pieces, cell, finger, slot):
 
 @compiled
 def segment_of(pieces, facet):
+    """The segment of a facet."""
     px = pieces.x[facet.start]
     py = pieces.y[facet.start]
     ex = pieces.x[facet.end] - px
@@ -90,34 +91,31 @@ def segment_of(pieces, facet):
 
 
 @compiled
-def _base_rows(pieces, z, still, segment, finger, piece, base, count):
-    """Append the half planes of one finger's piece; ``still`` is the finger on the segment."""
-    vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
-    ux = z[finger, 0] - z[still, 0]
-    uy = z[finger, 1] - z[still, 1]
-    size = abs(ux) + abs(uy)
-    for s in range(ptr[piece], ptr[piece + 1]):
-        nx = pieces.normal_x[s]
-        ny = pieces.normal_y[s]
-        a = slot_vertex[s]
-        dx = vx[a] - segment.x
-        dy = vy[a] - segment.y
-        base[count, G_X] = ux * nx + uy * ny
-        base[count, G_Y] = ux * ny - uy * nx
-        base[count, ALONG] = nx * segment.e_x + ny * segment.e_y
-        base[count, BOUND] = nx * dx + ny * dy
-        base[count, ERROR] = CLEARANCE * pieces.scale + 4.0 * EPS * (
-            abs(dx) + abs(dy) + pieces.scale * size
-        )
-        count += 1
-    return count
-
-
-@compiled
 def rows_of_others(pieces, z, facet, segment, base):
-    """The half planes of both other fingers; returns how many."""
-    n = _base_rows(pieces, z, facet.finger, segment, facet.second, facet.second_piece, base, 0)
-    return _base_rows(pieces, z, facet.finger, segment, facet.third, facet.third_piece, base, n)
+    """The half planes of both other fingers' pieces; returns how many."""
+    vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
+    normal_x, normal_y, scale = pieces.normal_x, pieces.normal_y, pieces.scale
+    count = 0
+    for other in range(2):
+        finger, piece = facet.second, facet.second_piece
+        if other == 1:
+            finger, piece = facet.third, facet.third_piece
+        ux = z[finger, 0] - z[facet.finger, 0]
+        uy = z[finger, 1] - z[facet.finger, 1]
+        size = abs(ux) + abs(uy)
+        for s in range(ptr[piece], ptr[piece + 1]):
+            nx = normal_x[s]
+            ny = normal_y[s]
+            a = slot_vertex[s]
+            dx = vx[a] - segment.x
+            dy = vy[a] - segment.y
+            base[count, G_X] = ux * nx + uy * ny
+            base[count, G_Y] = ux * ny - uy * nx
+            base[count, ALONG] = nx * segment.e_x + ny * segment.e_y
+            base[count, BOUND] = nx * dx + ny * dy
+            base[count, ERROR] = CLEARANCE * scale + 4.0 * EPS * (abs(dx) + abs(dy) + scale * size)
+            count += 1
+    return count
 
 
 @compiled
