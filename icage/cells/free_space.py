@@ -20,12 +20,11 @@ from icage.cells.kernels.columns import (
     MERGE_EDGE,
     PASS_SIGMA,
     PASS_WX,
-    PASS_WY,
     RECORD_BIRTH,
     RECORD_LEVEL,
     Ending,
 )
-from icage.cells.kernels.facet import ends_on_facet
+from icage.cells.kernels.facet import ends_on_facet, middles_on_facets
 from icage.cells.kernels.search import explore
 from icage.cells.kernels.tree import merge, visited_births
 from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
@@ -150,11 +149,17 @@ class Search:
 
     def edge_configuration(self, edge: int) -> Configuration:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
-        cell = self.cells[self.edges[edge, EDGE_FROM]]
-        finger, slot = int(self.edges[edge, EDGE_FINGER]), int(self.edges[edge, EDGE_SLOT])
-        wx, wy = self.edge_value[edge, PASS_WX], self.edge_value[edge, PASS_WY]
-        a, b = self.free_space.on_edge(cell, finger, slot, wx, wy)
-        return Configuration(0.5 * (a.d + b.d), a.w)
+        return self.edge_configurations([edge])[0]
+
+    def edge_configurations(self, edges: list[int]) -> list[Configuration]:
+        """The same for several edges."""
+        which = np.array(edges, dtype=np.int64)
+        rows = self.edges[which]
+        middle = middles_on_facets(
+            self.free_space.pieces, self.free_space.z, self.nodes[rows[:, EDGE_FROM]],
+            rows[:, EDGE_FINGER], rows[:, EDGE_SLOT], self.edge_value[which, PASS_WX:],
+        )  # fmt: skip
+        return [Configuration(complex(*m[:2]), complex(*m[2:])) for m in middle.tolist()]
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,11 +18,12 @@ from icage.cells.kernels.columns import (
     PASS_SIGMA,
     StartSide,
 )
+from icage.cells.kernels.slide import can_slide
 from icage.cells.kernels.tree import births
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers
 from icage.geometry.way_out import corners_before_pinch
-from icage.tolerance import DEPTH_CUT, LEVEL
+from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU, SAME_POINT, SLIDE_GIVE
 
 
 class Joining(NamedTuple):
@@ -119,7 +120,7 @@ def _grasp(
     finger, slot = born.where[0].tolist()
     a, b = free_space.on_edge(found.cells[node], finger, slot, wx, wy)
     here = Configuration(0.5 * (a.d + b.d), a.w)
-    plateau = plateau_through(free_space, here, sigma)
+    plateau = plateau_through(free_space, here, sigma) if _slides(free_space, here, sigma) else None
     contacts = free_space.contacts(here)
     return GraspMinimum(
         -1,
@@ -130,6 +131,18 @@ def _grasp(
         free_fingers(free_space.outline, contacts),
         joined_at,
     )
+
+
+def _slides(free_space: FreeSpace, here: Configuration, sigma: float) -> bool:
+    """Whether there is a plateau at all: what ``plateau_through`` finds first, and fast."""
+    size = free_space.pieces.diameter
+    hand = np.array([here.d.real, here.d.imag, here.w.real, here.w.imag])
+    return bool(
+        can_slide(
+            free_space.pieces, free_space.z, hand, sigma, free_space.cap, free_space.worst,
+            SAME_POINT * size, PLATEAU * size, SLIDE_GIVE * size, DEPTH_CUT * size,
+        )
+    )  # fmt: skip
 
 
 def _plateau_contacts(
@@ -195,11 +208,14 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     Between neighbours d and w move in a straight line, so every finger does; both ends lie in one
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
-    points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
+    free_space = found.free_space
+    points = [target.at, *found.edge_configurations(path_edges(found))]
     # the last piece, or the finger that stands still, takes all three
-    still = found.free_space.contacts(points[-1])[max(found.standing, 0)]
+    still = free_space.contacts(points[-1])[max(found.standing, 0)]
     # a last pass that is a pinched hand already is the end itself
-    points = points[: corners_before_pinch([p.w for p in points], found.free_space.pieces.diameter)]
-    rows = [found.free_space.placement(p) for p in points]
-    rows.append(np.array([*still, rows[-1][2], 0.0]))
-    return np.array(rows), found.free_space.hand.least_gap([p.w for p in points])
+    points = points[: corners_before_pinch([p.w for p in points], free_space.pieces.diameter)]
+    d, w = np.array([p.d for p in points]), np.array([p.w for p in points])
+    x, y = free_space.origin
+    rows = np.column_stack([d.real + x, d.imag + y, np.angle(w), np.abs(w)])
+    rows = np.vstack([rows, [*still, rows[-1, 2], 0.0]])
+    return rows, free_space.hand.least_gap(w.tolist())

@@ -27,8 +27,8 @@ _MOST: Final = 12
 """The same on average: best between 300 and 600 edges, within a tenth from 9 to 15."""
 
 _SPREAD: Final = 0.4
-"""[_MOST, _WIDEST] Stretches are longer and shorter by up to this: were all alike, three fingers that
-are whole stretches apart would come under their apexes together, in the most cells."""
+"""[_MOST, _WIDEST] Stretches are longer and shorter by up to this: were all alike, three fingers
+whole stretches apart would come under their apexes together, in the most cells."""
 
 _GOLDEN: Final = 0.6180339887498949
 """[1] Multiples of it modulo 1 are spread evenly and never repeat."""

@@ -153,3 +153,20 @@ def ends_on_facet(pieces, z, cell, finger, slot, wx, wy):
     """Where a finger may be along the edge ``slot`` of its piece for a given w."""
     facet = facet_of(pieces, cell, finger, slot)
     return finger_on_segment(pieces, z, facet, wx, wy, np.empty((MAX_BASE, 5)))
+
+
+@compiled
+def middles_on_facets(pieces, z, cells, fingers, slots, w):
+    """Hands (k, 4) = d_x, d_y, w_x, w_y in the middle of where facets of cells hold a given w."""
+    base = np.empty((MAX_BASE, 5))
+    hands = np.empty((len(cells), 4))
+    for k in range(len(cells)):
+        finger = fingers[k]
+        wx, wy = w[k, 0], w[k, 1]
+        ends = finger_on_segment(
+            pieces, z, facet_of(pieces, cells[k], finger, slots[k]), wx, wy, base
+        )
+        hands[k, 0] = 0.5 * (ends.x_lo + ends.x_hi) - (wx * z[finger, 0] - wy * z[finger, 1])
+        hands[k, 1] = 0.5 * (ends.y_lo + ends.y_hi) - (wx * z[finger, 1] + wy * z[finger, 0])
+        hands[k, 2], hands[k, 3] = wx, wy
+    return hands
