@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import ComplexArray, FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
 from icage.cells.kernels.columns import (
@@ -214,7 +214,8 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     still = free_space.contacts(points[-1])[max(found.standing, 0)]
     # a last pass that is a pinched hand already is the end itself
     points = points[: corners_before_pinch([p.w for p in points], free_space.pieces.diameter)]
-    d, w = np.array([p.d for p in points]), np.array([p.w for p in points])
+    d: ComplexArray = np.array([p.d for p in points])
+    w: ComplexArray = np.array([p.w for p in points])
     x, y = free_space.origin
     rows = np.column_stack([d.real + x, d.imag + y, np.angle(w), np.abs(w)])
     rows = np.vstack([rows, [*still, rows[-1, 2], 0.0]])

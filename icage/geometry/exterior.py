@@ -14,7 +14,7 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
-from icage.geometry.convex import merge_convex, triangulate
+from icage.geometry.convex import merge_convex, triangulate, twins
 from icage.geometry.round_chains import with_apexes
 from icage.hand import HandShape
 from icage.kernels.straight import corners
@@ -124,18 +124,9 @@ def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) ->
     owner = np.repeat(np.arange(len(rings)), sizes)
     side = vertices[slot_end] - vertices[slot_vertex]
     length = np.hypot(side[:, 0], side[:, 1])
-    by_ends = {
-        (int(a), int(b)): s for s, (a, b) in enumerate(zip(slot_vertex, slot_end, strict=True))
-    }
-    neighbour = np.array(
-        [
-            owner[by_ends[(int(b), int(a))]]
-            if (int(b), int(a)) in by_ends
-            else (BOX if a < 4 and b < 4 else WALL)
-            for a, b in zip(slot_vertex, slot_end, strict=True)
-        ],
-        dtype=np.int64,
-    )
+    twin = twins(slot_vertex, slot_end, len(vertices))
+    outside = np.where((slot_vertex < 4) & (slot_end < 4), BOX, WALL)
+    neighbour = np.where(twin >= 0, owner[twin], outside)
     walls = np.flatnonzero(neighbour == WALL)
     return Pieces(
         x=np.ascontiguousarray(vertices[:, 0]),

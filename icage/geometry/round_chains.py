@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -120,6 +120,10 @@ def _turns(ring: FloatArray) -> FloatArray:
 def _groups(turn: FloatArray) -> list[tuple[int, int]]:
     """First and last edges of groups with left turns only; the last may be n or more."""
     n = len(turn)
+    gentle = np.where(turn > 0.0, turn, np.inf)
+    sums = sum(np.roll(gentle, -k) for k in range(_FEWEST))
+    if n <= _FEWEST or not bool(np.any(sums <= _WIDEST * (1.0 + _SPREAD))):
+        return []
     sharp = np.flatnonzero((turn <= 0.0) | (turn > _WIDEST / 2.0))
     begin = int(sharp[0]) if len(sharp) else 0
     groups: list[tuple[int, int]] = []
@@ -165,8 +169,12 @@ def _clear(ring: FloatArray, found: list[Stretch]) -> list[Stretch]:
     n = len(ring)
     ends = np.array([(s.first + 1, s.last) for s in found]) % n
     apexes = np.array([s.apex for s in found])
-    caps = shapely.polygons(np.stack([ring[ends[:, 0]], apexes, ring[ends[:, 1]]], axis=1))
-    edges = shapely.linestrings(np.stack([ring, np.roll(ring, -1, axis=0)], axis=1))
+    caps: list[Any] = list(
+        shapely.polygons(np.stack([ring[ends[:, 0]], apexes, ring[ends[:, 1]]], axis=1))
+    )
+    edges: list[Any] = list(
+        shapely.linestrings(np.stack([ring, np.roll(ring, -1, axis=0)], axis=1))
+    )
     blocked: set[int] = set()
     for k, edge in shapely.STRtree(edges).query(caps, predicate="intersects").T.tolist():
         if (edge - found[k].first) % n > found[k].last - found[k].first:
