@@ -10,6 +10,10 @@ from icage.arrays import ComplexArray, FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
 from icage.cells.kernels.columns import (
+    BIRTH_SIGMA,
+    BIRTH_WX,
+    BORN_FINGER,
+    BORN_SLOT,
     EDGE_FROM,
     LOW_DEPTH,
     LOW_LEVEL,
@@ -18,10 +22,11 @@ from icage.cells.kernels.columns import (
     PASS_SIGMA,
     StartSide,
 )
-from icage.cells.kernels.slide import can_slide
+from icage.cells.kernels.facet import middles_on_facets
+from icage.cells.kernels.slide import which_slide
 from icage.cells.kernels.tree import births
 from icage.cells.target import Target, plateau_through
-from icage.geometry.statics import free_fingers
+from icage.geometry.statics import free_fingers, free_fingers_of
 from icage.geometry.way_out import corners_before_pinch
 from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU, SAME_POINT, SLIDE_GIVE
 
@@ -68,10 +73,9 @@ def grasps_and_punctures(
     """All grasps (the target first), the punctures in ascending order, and each grasp's node."""
     free_space = found.free_space
     met = joinings(tree, DEPTH_CUT * free_space.pieces.diameter)
-    others: list[tuple[GraspMinimum, int]] = []
-    for joining in met:
-        for node in joining.minima:
-            others.append((_grasp(free_space, found, tree, node, joining.sigma), node))
+    joined = [(node, joining.sigma) for joining in met for node in joining.minima]
+    grasps_of = _grasps(free_space, found, joined)
+    others = [(grasp, node) for grasp, (node, _) in zip(grasps_of, joined, strict=True)]
     others.sort(key=lambda pair: (round(pair[0].sigma, 12), pair[0].contacts.ravel().tolist()))
     first = _target_grasp(free_space, target)
     ids = {node: k + 1 for k, (_, node) in enumerate(others)}
@@ -108,41 +112,36 @@ def _target_grasp(free_space: FreeSpace, target: Target) -> GraspMinimum:
     )
 
 
-def _grasp(
-    free_space: FreeSpace, found: Search, tree: Tree, node: int, joined_at: float
-) -> GraspMinimum:
-    # the least point of the cell by itself, whichever of several equal ones the tree has noted
-    born = births(
-        free_space.pieces, free_space.z, found.nodes[node : node + 1], free_space.cap,
-        free_space.worst,
+def _grasps(
+    free_space: FreeSpace, found: Search, joined: list[tuple[int, float]]
+) -> list[GraspMinimum]:
+    """The least points of nodes, each with the level at which its basin joins the target's."""
+    if not joined:
+        return []
+    pieces, z = free_space.pieces, free_space.z
+    nodes = found.nodes[[node for node, _ in joined]]
+    # of each cell by itself, whichever of several equal ones the tree has noted
+    born = births(pieces, z, nodes, free_space.cap, free_space.worst)
+    sigma = born.value[:, BIRTH_SIGMA]
+    hands = middles_on_facets(
+        pieces, z, nodes, born.where[:, BORN_FINGER], born.where[:, BORN_SLOT],
+        born.value[:, BIRTH_WX:],
     )  # fmt: skip
-    sigma, wx, wy = born.value[0].tolist()
-    finger, slot = born.where[0].tolist()
-    a, b = free_space.on_edge(found.cells[node], finger, slot, wx, wy)
-    here = Configuration(0.5 * (a.d + b.d), a.w)
-    plateau = plateau_through(free_space, here, sigma) if _slides(free_space, here, sigma) else None
-    contacts = free_space.contacts(here)
-    return GraspMinimum(
-        -1,
-        False,
-        sigma,
-        contacts,
-        _plateau_contacts(free_space, plateau),
-        free_fingers(free_space.outline, contacts),
-        joined_at,
-    )
-
-
-def _slides(free_space: FreeSpace, here: Configuration, sigma: float) -> bool:
-    """Whether there is a plateau at all: what ``plateau_through`` finds first, and fast."""
-    size = free_space.pieces.diameter
-    hand = np.array([here.d.real, here.d.imag, here.w.real, here.w.imag])
-    return bool(
-        can_slide(
-            free_space.pieces, free_space.z, hand, sigma, free_space.cap, free_space.worst,
-            SAME_POINT * size, PLATEAU * size, SLIDE_GIVE * size, DEPTH_CUT * size,
-        )
+    size = pieces.diameter
+    # what ``plateau_through`` asks first
+    slide = which_slide(
+        pieces, z, hands, sigma, free_space.cap, free_space.worst,
+        SAME_POINT * size, PLATEAU * size, SLIDE_GIVE * size, DEPTH_CUT * size,
     )  # fmt: skip
+    at = [Configuration(complex(*m[:2]), complex(*m[2:])) for m in hands.tolist()]
+    contacts = [free_space.contacts(here) for here in at]
+    touching = free_fingers_of(free_space.outline, np.array(contacts))
+    grasps: list[GraspMinimum] = []
+    for k, (here, low, (_, level)) in enumerate(zip(at, sigma.tolist(), joined, strict=True)):
+        ends = plateau_through(free_space, here, low) if slide[k] else None
+        plateau = _plateau_contacts(free_space, ends)
+        grasps.append(GraspMinimum(-1, False, low, contacts[k], plateau, touching[k], level))
+    return grasps
 
 
 def _plateau_contacts(

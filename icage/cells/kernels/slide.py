@@ -126,6 +126,15 @@ def can_slide(pieces, z, hand, sigma, cap, worst, same, far, give, cut):
 
 
 @compiled
+def which_slide(pieces, z, hands, sigma, cap, worst, same, far, give, cut):
+    """``can_slide`` of hands (k, 4) with least sigma (k,)."""
+    slide = np.zeros(len(hands), np.bool_)
+    for k in range(len(hands)):
+        slide[k] = can_slide(pieces, z, hands[k], sigma[k], cap, worst, same, far, give, cut)
+    return slide
+
+
+@compiled
 def _near(pieces, x, y, reach):
     """Pieces at a point; a hand solved in doubles may sit a little inside a wall."""
     found = pieces_within(pieces, x, y, reach)
