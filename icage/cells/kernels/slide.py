@@ -82,7 +82,7 @@ def _furthest(pieces, z, cell, dx, dy, wx, wy, give, room):
     """How far from (d_x, d_y) a hand of this w can be translated inside its cell, to ``give``."""
     px, py, qx, qy = room[0], room[1], room[2], room[3]
     n = 0
-    for finger in range(3):
+    for finger in range(len(cell)):
         shift_x = wx * z[finger, 0] - wy * z[finger, 1]
         shift_y = wx * z[finger, 1] + wy * z[finger, 0]
         for s in range(pieces.ptr[cell[finger]], pieces.ptr[cell[finger] + 1]):
