@@ -49,7 +49,7 @@ def _careful_rows(pieces, z, facet, side, finger, piece, base, count):
         # inward normal of a counterclockwise piece: the edge turned left by a right angle
         nxh, nxl = dd.two_sum(vy[a], -vy[b])
         nyh, nyl = dd.two_sum(vx[b], -vx[a])
-        inv = 1.0 / math.hypot(nxh, nyh)
+        inv = 1.0 / math.sqrt(nxh * nxh + nyh * nyh)
         nxh, nxl = dd.scale(nxh, nxl, inv)
         nyh, nyl = dd.scale(nyh, nyl, inv)
         base[count, _C_GX], base[count, _C_GX + 1] = dd.dot(uxh, uxl, uyh, uyl, nxh, nxl, nyh, nyl)
@@ -131,7 +131,7 @@ def pass_careful(pieces, z, facet, cap, give):
 
 @compiled
 def _careful_put(g, ch, cl, cap, slack, rows, count):
-    norm = math.hypot(g.x_hi, g.y_hi)
+    norm = math.sqrt(g.x_hi * g.x_hi + g.y_hi * g.y_hi)
     if ch + norm * cap < -slack:
         return count, True
     if ch - norm * cap > slack:

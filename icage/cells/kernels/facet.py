@@ -86,7 +86,8 @@ def segment_of(pieces, facet):
     py = pieces.y[facet.start]
     ex = pieces.x[facet.end] - px
     ey = pieces.y[facet.end] - py
-    length = math.hypot(ex, ey)
+    # not hypot, whose last place is not the same in the interpreter
+    length = math.sqrt(ex * ex + ey * ey)
     return Segment(px, py, ex / length, ey / length, length)
 
 

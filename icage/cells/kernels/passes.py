@@ -113,7 +113,7 @@ def pass_fast(pieces, z, facet, cap, worst, room):
 @compiled
 def _put(gx, gy, c, err, weight, cap, rows, count):
     """Store one row scaled to |g| = 1, unless it holds for every |w| <= cap or for none."""
-    norm = math.sqrt(gx * gx + gy * gy)  # lengths near the diameter's: no overflow, hypot is slow
+    norm = math.sqrt(gx * gx + gy * gy)  # lengths near the diameter's: no overflow; hypot is slow
     reach = norm * cap
     if c + err + reach < 0.0:
         return _Stored(count, FOUND)
@@ -146,7 +146,7 @@ def pass_value(pieces, z, facet, cap, worst, room):
             give *= 10.0
     if found.status == INFEASIBLE:
         return Pass(np.inf, 0.0, 0.0)
-    sigma = math.hypot(found.w_x, found.w_y)
+    sigma = math.sqrt(found.w_x * found.w_x + found.w_y * found.w_y)
     if sigma > cap:
         return Pass(np.inf, 0.0, 0.0)
     return Pass(sigma, found.w_x, found.w_y)
