@@ -259,7 +259,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--json", type=Path, help="write the figures")
+    parser.add_argument("--json", type=Path, help="write the figures, name: value")
     parser.add_argument("--growth", action="store_true", help="and plans of 20 to 600 vertices")
     parser.add_argument("--round", action="store_true", help="and round objects")
     parser.add_argument("--one-round", nargs=2, metavar=("OBJECT", "METHOD"))
@@ -297,7 +297,7 @@ def main() -> int:
     if options.update_baseline:
         BASELINE.write_text(json.dumps(base | rows, indent=1) + "\n")
     if options.json is not None:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+        options.json.write_text(json.dumps(figures, indent=1) + "\n")
     return 0
 
 

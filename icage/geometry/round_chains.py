@@ -169,12 +169,10 @@ def _clear(ring: FloatArray, found: list[Stretch]) -> list[Stretch]:
     n = len(ring)
     ends = np.array([(s.first + 1, s.last) for s in found]) % n
     apexes = np.array([s.apex for s in found])
-    caps: list[Any] = list(
-        shapely.polygons(np.stack([ring[ends[:, 0]], apexes, ring[ends[:, 1]]], axis=1))
-    )
-    edges: list[Any] = list(
-        shapely.linestrings(np.stack([ring, np.roll(ring, -1, axis=0)], axis=1))
-    )
+    corners = np.stack([ring[ends[:, 0]], apexes, ring[ends[:, 1]]], axis=1)
+    caps: list[Any] = np.asarray(shapely.polygons(corners)).tolist()
+    sides = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
+    edges: list[Any] = np.asarray(shapely.linestrings(sides)).tolist()
     blocked: set[int] = set()
     for k, edge in shapely.STRtree(edges).query(caps, predicate="intersects").T.tolist():
         if (edge - found[k].first) % n > found[k].last - found[k].first:
