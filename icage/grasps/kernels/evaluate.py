@@ -22,7 +22,7 @@ from icage.cells.kernels.columns import (
     RECORD_LEVEL,
     Ending,
 )
-from icage.cells.kernels.largest import largest_sigma
+from icage.cells.kernels.largest import largest_in
 from icage.cells.kernels.minimum import MOST_CELLS, nearest_minimum
 from icage.cells.kernels.near import Hand
 from icage.cells.kernels.search import explore
@@ -39,6 +39,10 @@ from icage.tolerance import (
 )
 
 GAVE_UP, _, _, MET = Ending
+
+
+_INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it, where the largest sigma is sought."""
 
 
 class Verdict(IntEnum):
@@ -163,7 +167,8 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
         return BROKEN_OFF, first, sigma_0, 0.0
     level = _level(found, sigma_0, sought.first, pieces.diameter)
     if level == np.inf:
-        level = largest_sigma(pieces, z, found.nodes, most)
+        cells = np.ascontiguousarray(found.nodes[:, :3])
+        level = largest_in(pieces, z, cells, _INSIDE * pieces.diameter, most)
     level = min(level, most)
     if level / sigma_0 - 1.0 < NOT_A_CAGE:
         return NO_CAGE, first, sigma_0, level
