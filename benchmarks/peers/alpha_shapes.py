@@ -14,9 +14,10 @@ rigid hand may stay caged a little above the sigma_max of a hand that may squeez
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
@@ -27,6 +28,8 @@ _TRIES = 400
 """Poses tried round the last start, and ..."""
 _NEAR = 0.01
 """... [diameter] how far apart."""
+_BATCHES = 50
+"""Batches of ``samples`` random poses, at most, to find so many that collide."""
 _GROWS = 1.01
 """Largest factor by which the hand opens from one start to the next."""
 
@@ -41,10 +44,11 @@ class Bisected:
 
 
 def sigma_max(
-    question: Question, samples: int, seed: int, largest: float, tolerance: float = 1e-3
+    question: Question, samples: int, seed: int, tolerance: float = 5e-3
 ) -> Bisected:
-    """Bisection of the size between sigma_0 and ``largest`` [unit], to ``tolerance`` [sigma_0]."""
-    low, high, calls = question.sigma_0, largest, 0
+    """Bisection of the size, to ``tolerance`` [sigma_0], up to where the object fits between any two
+    fingers."""
+    low, high, calls = question.sigma_0, question.largest, 0
     while high - low > tolerance * question.sigma_0:
         middle = 0.5 * (low + high)
         calls += 1
@@ -61,16 +65,26 @@ def caged(question: Question, sigma: float, samples: int, seed: int) -> bool:
     start = start_of(question, sigma, rng)
     if start is None:
         return False
-    long_arm = sigma * float(np.abs(question.arms).max())
-    scale = np.array([1.0, 1.0, long_arm])  # turns as lengths: a metric of space
-    poses, depth = _colliding(question, sigma, start[2], samples, rng)
+    middle = _middle(question.arms)
+    around = replace(question, arms=question.arms - middle)
+    shift = sigma * np.exp(1j * start[2]) * middle
+    start = start + np.array([shift.real, shift.imag, 0.0])
+    reach = sigma * float(np.abs(around.arms).max())
+    poses, depth = _colliding(around, sigma, start[2], samples, rng)
     if len(poses) < 5:
         return False
-    # |move of finger k| <= |shift| + arm |turn| <= sqrt(1 + (arm / long arm)^2) |shift, turn|
-    stretch = np.sqrt(1.0 + (sigma * np.abs(question.arms) / long_arm) ** 2)
+    # with turns times reach as a third length, a finger's move is at most
+    # |shift| + arm |turn| <= sqrt(1 + (arm / reach)^2) |(shift, reach turn)|
+    stretch = np.sqrt(1.0 + (sigma * np.abs(around.arms) / reach) ** 2)
     radius = (depth / stretch).max(axis=1)
-    middle = np.array([question.reference.real, question.reference.imag, 0.0])
-    return in_void((poses - middle) * scale, radius, (start - middle) * scale)
+    return in_void((poses - start) * [1.0, 1.0, reach], radius, np.zeros(3))
+
+
+def _middle(arms: np.ndarray) -> complex:
+    """Of the smallest circle round the fingers: about it a turn moves them least."""
+    fingers = shapely.multipoints(np.column_stack([arms.real, arms.imag]))
+    circle = shapely.minimum_bounding_circle(fingers).centroid
+    return complex(circle.x, circle.y)
 
 
 def start_of(question: Question, sigma: float, rng: np.random.Generator) -> np.ndarray | None:
@@ -94,17 +108,22 @@ def start_of(question: Question, sigma: float, rng: np.random.Generator) -> np.n
 def _colliding(
     question: Question, sigma: float, turn: float, samples: int, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Those of so many random poses that collide, and each finger's depth, 0 outside."""
+    """So many random poses that collide (n, 3), and each finger's depth (n, k), 0 outside."""
     reach = sigma * float(np.abs(question.arms).max())
     low_x, low_y, high_x, high_y = question.obstacle.bounds
-    poses = rng.uniform(
-        [low_x - reach, low_y - reach, turn - np.pi],
-        [high_x + reach, high_y + reach, turn + np.pi],
-        (samples, 3),
-    )
-    depth = np.maximum(-clearance(question.obstacle, question.fingers(poses, sigma)), 0.0)
-    hit = depth.max(axis=1) > 0.0
-    return poses[hit], depth[hit]
+    low = [low_x - reach, low_y - reach, turn - np.pi]
+    high = [high_x + reach, high_y + reach, turn + np.pi]
+    kept_poses, kept_depth, kept = [np.empty((0, 3))], [np.empty((0, len(question.arms)))], 0
+    for _ in range(_BATCHES):
+        poses = rng.uniform(low, high, (samples, 3))
+        depth = np.maximum(-clearance(question.obstacle, question.fingers(poses, sigma)), 0.0)
+        hit = depth.max(axis=1) > 0.0
+        kept_poses.append(poses[hit])
+        kept_depth.append(depth[hit])
+        kept += int(hit.sum())
+        if kept >= samples:
+            break
+    return np.concatenate(kept_poses)[:samples], np.concatenate(kept_depth)[:samples]
 
 
 def in_void(centres: np.ndarray, radii: np.ndarray, start: np.ndarray) -> bool:

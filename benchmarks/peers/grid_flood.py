@@ -22,6 +22,9 @@ from benchmarks.peers.question import Question
 OUTSIDE = 0
 """The set of the outside, and the number of poses in collision in arrays of sets."""
 
+NEIGHBOURS = np.ones((3, 3, 3), dtype=bool)
+"""Poses one step away along any axes at once."""
+
 
 @dataclass(frozen=True)
 class Flooded:
@@ -38,8 +41,8 @@ class Flooded:
         return 0.5 * (self.apart + self.joined)
 
 
-def flood(question: Question, step: float, largest: float = math.inf) -> Flooded | None:
-    """The level of escape on a grid; None if the object is still held at ``largest`` [unit].
+def flood(question: Question, step: float) -> Flooded | None:
+    """The level of escape on a grid; None if no size up to ``question.largest`` lets it out.
 
     ``step`` [diameter] is how far a finger moves from one grid pose to the next, along each axis,
     with the hand at its target's size. The target's own pose is on the grid.
@@ -50,13 +53,12 @@ def flood(question: Question, step: float, largest: float = math.inf) -> Flooded
     sets = DisjointSet([OUTSIDE])
     below: tuple[np.ndarray, tuple[int, int]] | None = None
     last, tested = OUTSIDE, 0
-    for j in range(-math.floor(question.sigma_0 / rise), 1 << 20):
+    steps_up = math.ceil((question.largest - question.sigma_0) / rise)
+    for j in range(-math.floor(question.sigma_0 / rise), steps_up + 1):
         sigma = question.sigma_0 + (j + 0.5) * rise
-        if sigma > largest:
-            return None
         free, at = _free(question, sigma, h, turns)
         tested += free.size
-        slices, found = ndimage.label(free, output=np.int64)
+        slices, found = ndimage.label(free, structure=NEIGHBOURS, output=np.int64)
         slices[slices > 0] += last
         for number in range(last + 1, last + found + 1):
             sets.add(number)

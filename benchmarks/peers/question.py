@@ -56,6 +56,13 @@ class Question:
         arms = (fingers - tried[best]) / sigma_0
         return cls(obstacle, arms, complex(tried[best]), sigma_0, case.outline.diameter)
 
+    @property
+    def largest(self) -> float:
+        """Size from which any two fingers are a diameter apart: surely no cage."""
+        gaps = np.abs(self.arms[:, None] - self.arms) + np.diag(np.full(len(self.arms), np.inf))
+        low_x, low_y, high_x, high_y = self.obstacle.bounds
+        return float(np.hypot(high_x - low_x, high_y - low_y) / gaps.min())
+
     def fingers(self, poses: np.ndarray, sigma: float) -> np.ndarray:
         """(..., k) complex, of poses (..., 3)."""
         at, turn = poses[..., 0] + 1j * poses[..., 1], np.exp(1j * poses[..., 2])
