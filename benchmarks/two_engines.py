@@ -101,6 +101,7 @@ def main() -> int:
     """Warm up, measure, print, compare with the baseline."""
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
     parser.add_argument("--count", type=int, default=12, help="targets an outline, three a size")
+    parser.add_argument("--json", type=Path, help="write the figures")
     parser.add_argument("--figure", type=Path)
     parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
@@ -117,8 +118,8 @@ def main() -> int:
             f"  {1e3 * row['contact_space_median']:18.3f}  {ratio:10.4f} ({before:8.4f})"
             f"  {row['regions_median']:7.0f}"
         )
-    if options.update_baseline:
-        BASELINE.write_text(json.dumps(rows, indent=1) + "\n")
+    for path in [BASELINE] * options.update_baseline + [options.json] * bool(options.json):
+        path.write_text(json.dumps(rows, indent=1) + "\n")
     if options.figure is not None:
         draw(rows, options.figure)
     return 0

@@ -43,11 +43,8 @@ class Bisected:
     calls: int
 
 
-def sigma_max(
-    question: Question, samples: int, seed: int, tolerance: float = 5e-3
-) -> Bisected:
-    """Bisection of the size, to ``tolerance`` [sigma_0], up to where the object fits between any two
-    fingers."""
+def sigma_max(question: Question, samples: int, seed: int, tolerance: float = 5e-3) -> Bisected:
+    """Bisection of the size to ``tolerance`` [sigma_0], from sigma_0 to ``question.largest``."""
     low, high, calls = question.sigma_0, question.largest, 0
     while high - low > tolerance * question.sigma_0:
         middle = 0.5 * (low + high)

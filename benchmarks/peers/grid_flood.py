@@ -109,4 +109,3 @@ def _join(sets: DisjointSet, one: np.ndarray, other: np.ndarray) -> None:
     pairs = np.unique(np.stack([one[both], other[both]], axis=1), axis=0)
     for a, b in pairs:
         sets.merge(int(a), int(b))
-

@@ -1,9 +1,9 @@
 """What every method is asked: fingers at the corners of a similar triangle round one polygon.
 
 The hand is told about a point of its own, its *reference*: at pose (x, y, turn) and size sigma,
-finger k stands at ``x + iy + sigma exp(i turn) arms[k]``. The reference is chosen so that the target
-opens straight away from it; so the opened hand at the target's own pose touches nothing, and a
-method that looks at poses one by one has a start.
+finger k stands at ``x + iy + sigma exp(i turn) arms[k]``. The reference is chosen so that the
+target opens straight away from it; so the opened hand at the target's own pose touches nothing, and
+a method that looks at poses one by one has a start.
 """
 
 from __future__ import annotations
