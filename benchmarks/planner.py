@@ -47,11 +47,10 @@ def timed(work: Callable[..., object], *arguments: object) -> float:
 def targets(outline: Outline, count: int, rng: np.random.Generator) -> list[np.ndarray]:
     """Contacts of immobilizing grasps of the outline, half of them with a useful cage."""
     bench = GraspEvaluator(outline, 0.0, Wanted())
-    jobs = bench.jobs(rng)
+    triples, points = bench.triples()
     found: list[np.ndarray] = []
-    for k in rng.permutation(len(jobs)):
-        triple, p = jobs[k]
-        candidate = bench.at(triple, p)
+    for k in rng.permutation(len(triples)):
+        candidate = bench.at(triples[k], points[k])
         if candidate is None:
             continue
         if candidate.score > 1.02 or len(found) % 2 == 0:
