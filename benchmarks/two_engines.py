@@ -22,6 +22,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from benchmarks.planner import star, targets, timed
+from benchmarks.timing import yardstick
 from experiments.figures.drawing.palette import FINGERS
 from icage.cells.free_space import FreeSpace, search
 from icage.cells.target import contacts_as_configuration, find_target
@@ -38,10 +39,7 @@ COLOURS = {"cells": FINGERS[0], "contact_space": FINGERS[1]}
 def measure(sizes: tuple[int, ...], count: int) -> dict[str, Any]:
     """Medians and maxima [s] by engine and size, and the counters of the contact space."""
     rng = np.random.default_rng(5)
-    sample = rng.random(2_000_000)
-    rows: dict[str, Any] = {
-        "yardstick": float(np.median([timed(np.sort, sample) for _ in range(5)]))
-    }
+    rows: dict[str, Any] = {"yardstick": yardstick()}
     for n in sizes:
         cells: list[float] = []
         contact: list[float] = []

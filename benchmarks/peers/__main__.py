@@ -25,7 +25,7 @@ import numpy as np
 from benchmarks.peers import alpha_shapes, grid_flood
 from benchmarks.peers.check import failed_checks
 from benchmarks.peers.question import Question
-from benchmarks.timing import REPEATS, Spread, interleaved, spread
+from benchmarks.timing import REPEATS, Spread, interleaved, peak_memory, spread
 from icage.case import Case
 from icage.formats.load import load
 from icage.planner import plan
@@ -38,6 +38,8 @@ SHIPPED = {
     "pliers, discs": OBJECTS / "pliers" / "cases" / "1_best.json",
     "saw, discs": OBJECTS / "saw" / "cases" / "1_best.json",
 }
+LARGEST = "saw, discs"
+"""The case on which memory is measured."""
 SAMPLES = (20_000, 60_000)
 STEPS = (30, 60)
 """[1 / diameter] Steps of the grid."""
@@ -55,9 +57,11 @@ def main() -> int:
     options = parser.parse_args()
     if options.check:
         return _check()
-    rows = measure(1 if options.quick else options.repeats, SAMPLES[: 1 if options.quick else None])
+    samples = SAMPLES[:1] if options.quick else SAMPLES
+    rows = measure(1 if options.quick else options.repeats, samples)
+    memory = measure_memory(samples)
     if options.json is not None:
-        document = {"format": "icage-peers/1", "rows": rows}
+        document = {"format": "icage-peers/1", "rows": rows, "memory_MB": memory}
         options.json.write_text(json.dumps(document, indent=1) + "\n")
     return 0
 
@@ -78,15 +82,39 @@ def measure(repeats: int, samples: tuple[int, ...]) -> list[dict[str, Any]]:
     return rows
 
 
+def measure_memory(samples: tuple[int, ...]) -> dict[str, float]:
+    """[MB] Most memory of a process that does nothing else, by method."""
+    case = load(SHIPPED[LARGEST])
+    memory: dict[str, float] = {}
+    for method in _ways(case, Question.of(case), samples):
+        code = f"from benchmarks.peers.__main__ import once; once({samples!r}, {method!r})"
+        memory[method] = peak_memory(code)
+        print(f"{LARGEST}, {method}: {memory[method]:.0f} MB", flush=True)
+    return memory
+
+
+def once(samples: tuple[int, ...], method: str) -> None:
+    """Ask the largest case by one method, for ``measure_memory``."""
+    case = load(SHIPPED[LARGEST])
+    _ways(case, Question.of(case), samples)[method](0)
+
+
+def _ways(
+    case: Case, question: Question, samples: tuple[int, ...]
+) -> dict[str, Callable[[int], Any]]:
+    ways: dict[str, Callable[[int], Any]] = {"planner": lambda _: _planned(case)}
+    for step in STEPS:
+        ways[f"grid flood, 1/{step}"] = partial(_flooded, question, 1.0 / step)
+    for count in samples:
+        ways[f"alpha shapes, {count} samples"] = partial(_bisected, question, count)
+    return ways
+
+
 def _rows(name: str, case: Case, repeats: int, samples: tuple[int, ...]) -> list[dict[str, Any]]:
     truth = plan(case).sigma_max  # compiles, too
     assert truth is not None
     question = Question.of(case)
-    tasks: dict[str, Callable[[int], Any]] = {"planner": lambda _: _planned(case)}
-    for step in STEPS:
-        tasks[f"grid flood, 1/{step}"] = partial(_flooded, question, 1.0 / step)
-    for count in samples:
-        tasks[f"alpha shapes, {count} samples"] = partial(_bisected, question, count)
+    tasks = _ways(case, question, samples)
     found = interleaved(tasks, repeats)
     quick = np.array([seconds for seconds, _ in found["planner"]]) / PLANS
     rows: list[dict[str, Any]] = []
