@@ -22,7 +22,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from benchmarks.figures import BENCHMARKS, baseline_path, measured, slipped, there
+from benchmarks.figures import BENCHMARKS, baseline_path, figures_of, measured, slipped, there
 from benchmarks.timing import REPEATS
 from experiments.environment import ROOT
 from experiments.io.versions import versions
@@ -118,7 +118,7 @@ def tell(ran: dict[str, list[Any]]) -> int:
         path = baseline_path(name)
         base = [json.loads(path.read_text(encoding="utf-8"))] if path.exists() else []
         print(f"{BENCHMARKS[name].title} ({name})")
-        for figure in BENCHMARKS[name].figures:
+        for figure in figures_of(name, documents):
             now, was = measured(figure, documents), measured(figure, base)
             if now is None:
                 print(f"  {figure.name:<56} {'not measured':>9}")

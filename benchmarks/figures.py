@@ -1,13 +1,14 @@
 """Which numbers of which benchmark count, which way is better, and how far they may slip.
 
-A figure is looked up in the JSON that its benchmark writes. A path is keys and numbers of rows with
-``/`` between them; ``key=value`` takes the row of a list that has it. Whatever is found may be a
+A figure is looked up in the JSON that its benchmark writes. A path is keys with `` > `` between
+them; ``key=value&other=value`` takes the row of a list that has these. Whatever is found may be a
 number, a ``Spread`` or three numbers (least, median, largest).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -15,6 +16,7 @@ from typing import Any, Literal
 from benchmarks.timing import Spread
 
 HERE = Path(__file__).parent
+STEP = " > "
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,7 @@ class Figure:
     name: str
     path: str
     unit: str
-    better: Literal["lower", "higher"]
+    better: Literal["lower", "higher", "not judged"]
     tolerance: float
     """[1] How much worse than the baseline, as a share of it, is still no slip."""
     over: str = ""
@@ -57,15 +59,17 @@ def _closing(target: str) -> tuple[Figure, ...]:
 
 def _start(name: str) -> tuple[Figure, ...]:
     return tuple(
-        Figure(f"{name}, {kind}", f"seconds/{name}/{kind}", "s", "lower", slip)
+        Figure(f"{name}, {kind}", f"seconds > {name} > {kind}", "s", "lower", slip)
         for kind, slip in (("wall", 0.5), ("processor", 0.3))
     )
 
 
 def _peer(case: str, method: str) -> tuple[Figure, ...]:
-    row = f"rows/case={case}&method={method}"
+    row = f"rows > case={case}&method={method}"
     return (
-        Figure(f"{case}, {method}: seconds / planner's", f"{row}/over_planner", "1", "higher", 0.4),
+        Figure(
+            f"{case}, {method}: seconds / planner's", f"{row} > over_planner", "1", "higher", 0.4
+        ),
     )
 
 
@@ -87,7 +91,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     "discs": Benchmark(
         "Disc fingers against point fingers",
         tuple(
-            Figure(f"a plan, discs / points, n = {n}", f"rows/n={n}/ratio", "1", "lower", 0.3)
+            Figure(f"a plan, discs / points, n = {n}", f"rows > n={n} > ratio", "1", "lower", 0.3)
             for n in (20, 40, 60)
         ),
         quick=("--outlines", "3"),
@@ -125,8 +129,8 @@ BENCHMARKS: dict[str, Benchmark] = {
     "two_engines": Benchmark(
         "Both methods of the planner",
         tuple(
-            Figure(f"contact space / cells, n = {n}", f"{n}/contact_space_median", "1", "lower",
-                   0.4, f"{n}/cells_median")
+            Figure(f"contact space / cells, n = {n}", f"{n} > contact_space_median", "1", "lower",
+                   0.4, f"{n} > cells_median")
             for n in (40, 100, 320)
         ),
         quick=("--count", "3"),
@@ -150,16 +154,33 @@ def baseline_path(name: str) -> Path:
     return HERE / f"{name}_baseline.json"
 
 
+def figures_of(name: str, documents: list[Any]) -> tuple[Figure, ...]:
+    """The figures of a benchmark; of one that names none every number it wrote, not judged."""
+    if BENCHMARKS[name].figures or not documents:
+        return BENCHMARKS[name].figures
+    return tuple(
+        Figure(path, path, "", "not judged", math.inf) for path in _numbers(documents[0], "")
+    )
+
+
+def _numbers(document: Any, path: str) -> Iterator[str]:
+    if three(document) is not None and not isinstance(document, bool):
+        yield path
+    elif isinstance(document, dict):
+        for key, value in document.items():
+            yield from _numbers(value, f"{path}{STEP}{key}" if path else key)
+
+
 def found(document: Any, path: str) -> Any:
     """What is at a path, or None.
 
     >>> rows = {"rows": [{"n": 20, "ratio": 2.0}, {"n": 40, "ratio": [1, 3, 4]}]}
-    >>> found(rows, "rows/n=40/ratio")
+    >>> found(rows, "rows > n=40 > ratio")
     [1, 3, 4]
-    >>> found(rows, "rows/n=30/ratio") is None
+    >>> found(rows, "rows > n=30 > ratio") is None
     True
     """
-    for step in _steps(document, path):
+    for step in path.split(STEP):
         if isinstance(document, list) and "=" in step:
             wanted = dict(pair.split("=", 1) for pair in step.split("&"))
             matching = (
@@ -171,16 +192,6 @@ def found(document: Any, path: str) -> Any:
         else:
             return None
     return document
-
-
-def _steps(document: Any, path: str) -> list[str]:
-    """Keys of a path; a key that has ``/`` in itself stands alone."""
-    if isinstance(document, dict) and path in document:
-        return [path]
-    parts = path.split("/")
-    if len(parts) > 1 and parts[0] == "rows":  # a method may be called "grid flood, 1/30"
-        return [parts[0], "/".join(parts[1:-1]), parts[-1]]
-    return parts
 
 
 def three(value: Any) -> tuple[float, float, float] | None:
@@ -216,6 +227,8 @@ def slipped(figure: Figure, now: float, base: float) -> bool:
     >>> slipped(slow, 1.05, 1.0), slipped(slow, 1.2, 1.0), slipped(slow, 0.2, 1.0)
     (False, True, False)
     """
+    if figure.better == "not judged":
+        return False
     if figure.better == "lower":
         return now > base * (1.0 + figure.tolerance)
     return now < base / (1.0 + figure.tolerance)

@@ -21,7 +21,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
-from benchmarks.figures import BENCHMARKS, measured
+from benchmarks.figures import BENCHMARKS, figures_of, measured
 from experiments.environment import ROOT
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE
 
@@ -192,7 +192,7 @@ def figures(document: dict[str, Any]) -> Iterator[str]:
     yield "| figure | median | least | largest | unit | better |"
     yield "|---|---|---|---|---|---|"
     for name, runs in document["benchmarks"].items():
-        for figure in BENCHMARKS[name].figures:
+        for figure in figures_of(name, runs):
             now = measured(figure, runs)
             if now is not None:
                 yield (
