@@ -36,6 +36,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="one run with fewer trials")
     parser.add_argument("--runs", type=int, help=f"of each ({REPEATS}; 1 with --quick)")
     parser.add_argument("--json", type=Path, help="write everything")
+    parser.add_argument("--keep", action="store_true", help="what FILE has of other benchmarks")
     parser.add_argument("--compare", action="store_true", help="exit 1 if a figure has slipped")
     parser.add_argument("--update-baselines", action="store_true")
     options = parser.parse_args()
@@ -45,28 +46,42 @@ def main() -> int:
     if runs < 1:
         parser.error(f"--runs is {runs}; at least 1 is needed")
     names = [name for name in BENCHMARKS if name in (options.only or BENCHMARKS)]
+    load = os.getloadavg()[0]
+    ran, failed = run_all([name for name in names if there(name)], runs, options.quick)
     document = {
         "format": "icage-benchmarks/1",
         "quick": options.quick,
-        "machine": {"cores": os.cpu_count(), "load_before": os.getloadavg()[0], **versions()},
+        "cores": os.cpu_count(),
+        "versions": versions(),
+        "load": sorted((load, os.getloadavg()[0])),
+        "benchmarks": ran,
     }
-    ran, failed = run_all([name for name in names if there(name)], runs, options.quick)
-    document["machine"]["load_after"] = os.getloadavg()[0]
-    document["benchmarks"] = ran
-    document["missing"] = [name for name in names if not there(name)]
-    document["failed"] = failed
     worse = tell(ran)
-    for name in document["missing"]:
+    for name in (name for name in names if not there(name)):
         print(f"{name}: not in this checkout")
     for name in failed:
         print(f"{name}: FAILED, see above")
     if options.json is not None:
+        if options.keep and options.json.exists():
+            document = together(json.loads(options.json.read_text(encoding="utf-8")), document)
         options.json.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     if options.update_baselines:
         for name, documents in ran.items():
             text = json.dumps(middle(documents), indent=1) + "\n"
             baseline_path(name).write_text(text, encoding="utf-8")
     return int(bool(failed) or (options.compare and worse > 0))
+
+
+def together(old: dict[str, Any], new: dict[str, Any]) -> dict[str, Any]:
+    """Both runs, a benchmark of the newer one where both have it. Only runs of one kind go."""
+    for what in ("quick", "versions"):
+        if old[what] != new[what]:
+            raise SystemExit(
+                f"--keep: {what} was {old[what]} and is {new[what]}; measure all again"
+            )
+    kept = {name: runs for name, runs in old["benchmarks"].items() if name in BENCHMARKS}
+    load = [f(old["load"][k], new["load"][k]) for k, f in enumerate((min, max))]
+    return new | {"load": load, "benchmarks": kept | new["benchmarks"]}
 
 
 def run_all(names: list[str], runs: int, quick: bool) -> tuple[dict[str, list[Any]], list[str]]:

@@ -8,6 +8,7 @@ number, a ``Spread`` or three numbers (least, median, largest).
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -217,7 +218,7 @@ def measured(figure: Figure, documents: Iterable[Any]) -> Spread | None:
     if not triples:
         return None
     lows, medians, highs = zip(*triples, strict=True)
-    return {"min": min(lows), "median": sorted(medians)[len(medians) // 2], "max": max(highs)}
+    return {"min": min(lows), "median": statistics.median(medians), "max": max(highs)}
 
 
 def slipped(figure: Figure, now: float, base: float) -> bool:

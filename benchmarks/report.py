@@ -137,13 +137,15 @@ def most(rows: list[dict[str, Any]]) -> str:
 
 def machine(document: dict[str, Any]) -> Iterator[str]:
     """Where and how it was measured."""
-    about = document["machine"]
+    about = document["versions"]
     libraries = ", ".join(
         f"{name} {about[name]}" for name in ("python", "numpy", "scipy", "numba", "mujoco")
     )
+    low, high = document["load"]
+    busy = ", more than there are cores" if high > document["cores"] else ""
     yield (
-        f"Measured on {about['cores']} cores ({about['platform']}; {libraries}; load "
-        f"{about['load_before']:.1f} at the beginning, {about['load_after']:.1f} at the end). "
+        f"Measured on {document['cores']} cores ({about['platform']}; {libraries}) with a load of "
+        f"{low:.1f} to {high:.1f} processes{busy}. "
         "Figures are least, median and largest. Seconds are processor seconds unless it says wall; "
         "a *yardstick* is the time in which the same process sorts two million doubles. What is "
         "compared took turns in one run: ratios can be compared between machines, seconds cannot."
