@@ -121,7 +121,8 @@ def bottom_line(document: dict[str, Any], rows: list[dict[str, Any]]) -> Iterato
         low, high = (100 * f(row["error"]["median"] for row in flood) for f in (min, max))
         yield (
             f"A flood over a grid takes {least(flood)} to {most(flood)} times as long and is off "
-            f"by {low:+.1f} to {high:+.1f} %, to either side. The planner is exact."
+            f"by {low:+.1f} to {high:+.1f} %, to either side. The planner "
+            "is exact for point fingers and safe within 1e-4 for discs ([theory](theory.md))."
         )
 
 

@@ -7,7 +7,6 @@ be compared, ratios inside one run can.
 
 from __future__ import annotations
 
-import os
 import statistics
 import subprocess
 import sys
@@ -72,9 +71,14 @@ def peak_memory(code: str) -> float:
 
     Raises subprocess.CalledProcessError if the code failed.
     """
-    child = subprocess.Popen([sys.executable, "-c", code])
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode != 0:
-        raise subprocess.CalledProcessError(child.returncode, ["python", "-c", code])
-    return usage.ru_maxrss / 1024.0
+    # a process starts with the memory of the one that made it on its record: a small one between
+    call = [sys.executable, "-c", _BETWEEN, code]
+    done = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True)
+    return int(done.stdout.splitlines()[-1]) / 1024.0
+
+
+_BETWEEN = """
+import resource, subprocess, sys
+subprocess.run([sys.executable, "-c", sys.argv[1]], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+"""
