@@ -236,7 +236,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
             color=colours[row["method"]], ms=6,
         )  # fmt: skip
     for method, colour in colours.items():
-        axes.plot([], [], "s", color=colour, label=method)
+        axes.plot([], [], "-", lw=4.0, color=colour, label=method)
     for case, mark in marks.items():
         axes.plot([], [], mark, color="none", markeredgecolor=INK, label=case)
     axes.axhline(0.0, color=INK, lw=0.5)
