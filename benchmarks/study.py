@@ -17,13 +17,14 @@ import json
 import resource
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.timing import timed
 from experiments.study.run.session import Session, session_of
 from experiments.study.run.shard import run_trials
 from experiments.study.run.shards import SHARD, on_threads, run_study
@@ -80,7 +81,7 @@ def _ratios(case: str, trials: int, passes: int) -> dict[str, float]:
     bare, whole, steps = [], [], 0
     for _ in range(passes):  # in turns, so that a busy neighbour strikes both
         with _session(case, trials, {}) as session:
-            seconds, table = _timed(lambda session=session: _study(session))
+            seconds, table = timed(lambda session=session: _study(session))
             whole.append(seconds)
             steps = int(np.sum(table["steps"].to_numpy()))
             bare.append(_bare(session))
@@ -91,7 +92,7 @@ def _ratios(case: str, trials: int, passes: int) -> dict[str, float]:
         seconds = []
         for _ in range(passes):
             with _session(case, trials, vary) as session:
-                seconds.append(_timed(lambda session=session: _study(session))[0])
+                seconds.append(timed(lambda session=session: _study(session))[0])
         figures[f"{name}: trials per second and core"] = trials / min(seconds)
     return figures
 
@@ -106,12 +107,6 @@ def _session(case: str, trials: int, vary: dict[str, str]) -> Iterator[Session]:
 def _study(session: Session) -> Any:
     backend = on_threads(1)
     return run_study(session.study, session.folder, backend, session.shard, lambda *_: None)[0]
-
-
-def _timed(run: Callable[[], Any]) -> tuple[float, Any]:
-    begin = time.process_time()
-    done = run()
-    return time.process_time() - begin, done
 
 
 def _bare(session: Session) -> float:

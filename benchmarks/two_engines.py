@@ -22,6 +22,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from benchmarks.planner import star, targets, timed
+from benchmarks.timing import yardstick
 from experiments.figures.drawing.palette import FINGERS
 from icage.cells.free_space import FreeSpace, search
 from icage.cells.target import contacts_as_configuration, find_target
@@ -38,10 +39,7 @@ COLOURS = {"cells": FINGERS[0], "contact_space": FINGERS[1]}
 def measure(sizes: tuple[int, ...], count: int) -> dict[str, Any]:
     """Medians and maxima [s] by engine and size, and the counters of the contact space."""
     rng = np.random.default_rng(5)
-    sample = rng.random(2_000_000)
-    rows: dict[str, Any] = {
-        "yardstick": float(np.median([timed(np.sort, sample) for _ in range(5)]))
-    }
+    rows: dict[str, Any] = {"yardstick": yardstick()}
     for n in sizes:
         cells: list[float] = []
         contact: list[float] = []
@@ -101,6 +99,7 @@ def main() -> int:
     """Warm up, measure, print, compare with the baseline."""
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
     parser.add_argument("--count", type=int, default=12, help="targets an outline, three a size")
+    parser.add_argument("--json", type=Path, help="write the figures")
     parser.add_argument("--figure", type=Path)
     parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
@@ -117,8 +116,8 @@ def main() -> int:
             f"  {1e3 * row['contact_space_median']:18.3f}  {ratio:10.4f} ({before:8.4f})"
             f"  {row['regions_median']:7.0f}"
         )
-    if options.update_baseline:
-        BASELINE.write_text(json.dumps(rows, indent=1) + "\n")
+    for path in [BASELINE] * options.update_baseline + [options.json] * bool(options.json):
+        path.write_text(json.dumps(rows, indent=1) + "\n")
     if options.figure is not None:
         draw(rows, options.figure)
     return 0

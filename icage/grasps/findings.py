@@ -97,6 +97,16 @@ def apart(contacts: FloatArray, others: FloatArray) -> FloatArray:
     return np.sqrt((gap**2).sum(axis=3).mean(axis=2)).min(axis=1)
 
 
+def distinct(contacts: FloatArray, within: float) -> IntArray:
+    """Rows of grasps (n, 3, 2), best first, without those that are near a better one, [unit]."""
+    left = np.arange(len(contacts))
+    kept: list[int] = []
+    while len(left):
+        kept.append(int(left[0]))
+        left = left[apart(contacts[left[0]], contacts[left]) >= within]
+    return np.array(kept, np.int64)
+
+
 def same_idea(outline: Outline, a: FloatArray, b: FloatArray) -> bool:
     """Whether two grasps (3, 2) differ by less than ``_ALIKE``."""
     return bool(apart(a, b[None])[0] < _ALIKE * outline.diameter)

@@ -20,15 +20,18 @@ from icage.geometry.near_frame import NearFrame
 from icage.grasps.crew import Crew, OutOfTimeError, Progress
 from icage.grasps.evaluator import SEGMENTS, GraspEvaluator
 from icage.grasps.features import neighbours
-from icage.grasps.findings import Findings, groups
+from icage.grasps.findings import Findings, distinct, groups
 from icage.grasps.wanted import Candidate, Wanted
 from icage.outline import Outline
 
 _ANY = Wanted()
 """Any grasp, by sigma_first / sigma_0."""
 
-_COARSE = 6
+_COARSE = 3
 """Segments of an arc per quadrant where discs are searched first: levels good to some 1e-3."""
+
+_FINE = 8
+"""... and where the best are compared and polished: good to 1e-4. ``plan`` has the last word."""
 
 _MOST_TRIPLES = 20_000
 """Triples that are tried, a random choice if there are more; how many are left out is told."""
@@ -52,12 +55,12 @@ that come furthest go on."""
 
 _BEST_IDEAS = 3
 _MEMBERS = 10
-_RIDGES = ((30, 0.03, 40), (6, 0.003, 40), (4, 0.0003, 40))
+_RIDGES = ((24, 0.03, 40), (4, 0.003, 40), (3, 0.0003, 40))
 
-_AGAIN = 240
+_AGAIN = 120
 """Grasps of discs, found between coarse chords, that are compared between finer ones."""
 
-_POLISHED = ((12, 0.004, 40), (8, 0.001, 40), (6, 0.0002, 40))
+_POLISHED = ((8, 0.003, 30), (4, 0.0005, 30))
 
 Ended: TypeAlias = Literal["out of time", "interrupted"]
 
@@ -263,7 +266,7 @@ class _Search:
 
     def _between_finer_chords(self, crew: Crew) -> None:
         """The best grasps of discs again where their levels are good to 1e-4, and polished."""
-        finer = GraspEvaluator(self.outline, self.radius, self.wanted, SEGMENTS)
+        finer = GraspEvaluator(self.outline, self.radius, self.wanted, _FINE)
         self.finer = finer
         best = Findings.together(self.found).best_first()
         ideas = groups(best.contacts, self.outline.diameter, _AGAIN // 4)
@@ -283,7 +286,8 @@ class _Search:
         size = self.outline.diameter
         for number, (most, stride, steps) in enumerate(rounds, 1):
             best = seeds.best_first()
-            seeds = best.of(np.arange(min(most, len(best))))
+            # many have come to one place
+            seeds = best.of(distinct(best.contacts, 0.3 * stride * size)[:most])
 
             # a simplex may miss a ridge that its mirror image finds: the first are sent out twice
             ways = [(row, 1.0) for row in range(len(seeds))]

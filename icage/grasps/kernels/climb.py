@@ -16,8 +16,8 @@ from icage.kernels.compiled import compiled
 _SIMPLEX = np.array([[0.0, 0.0], [1.0, 0.3], [-0.3, 1.0]])
 """[stride] First corners."""
 
-_CLOSE = 1e-7
-"""[diameter] A simplex this small has arrived."""
+_CLOSE = 0.02
+"""[stride] A simplex this small has arrived: another one begins smaller."""
 
 
 @compiled
@@ -102,7 +102,7 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
                 np.hypot(at[1, 0] - at[0, 0], at[1, 1] - at[0, 1]),
                 np.hypot(at[2, 0] - at[0, 0], at[2, 1] - at[0, 1]),
             )
-            if size < _CLOSE * pieces.diameter:
+            if size < _CLOSE * abs(stride):
                 break
             for k in range(2):
                 trial[k] = at[0, k] + at[1, k] - at[2, k]
