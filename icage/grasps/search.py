@@ -31,7 +31,7 @@ _COARSE = 3
 """Segments of an arc per quadrant where discs are searched first: levels good to some 1e-3."""
 
 _FINE = 8
-"""... and where the best are compared and polished: good to 1e-4. ``plan`` has the last word."""
+"""... and where the best are compared and polished: good to 1e-4."""
 
 _MOST_TRIPLES = 20_000
 """Triples that are tried, a random choice if there are more; how many are left out is told."""
@@ -61,6 +61,8 @@ _AGAIN = 120
 """Grasps of discs, found between coarse chords, that are compared between finer ones."""
 
 _POLISHED = ((8, 0.003, 30), (4, 0.0005, 30))
+_LAST = ((3, 0.0003, 30),)
+"""Between the chords of ``SEGMENTS``; ``plan`` has the last word."""
 
 Ended: TypeAlias = Literal["out of time", "interrupted"]
 
@@ -159,27 +161,25 @@ class _Search:
         self.outline, self.radius, self.wanted, self.rng = outline, radius, wanted, rng
         self.triples = self.left_out = 0
         self.found: list[Findings] = []
-        self.fine: list[Findings] = []
-        self.evaluator: GraspEvaluator | None = None
-        self.finer: GraspEvaluator | None = None
+        self.finer: list[list[Findings]] = []
+        """What was found between finer chords, the finest first."""
+        self.used: list[GraspEvaluator] = []
 
     @property
     def broken_off(self) -> int:
         """Searches that were too large."""
-        used = [e for e in (self.evaluator, self.finer) if e is not None]
-        return sum(e.broken_off for e in used)
+        return sum(evaluator.broken_off for evaluator in self.used)
 
     def best_first(self) -> Findings:
         """What there is: grasps compared between finer chords come first."""
-        return Findings.together(
-            [Findings.together(self.fine).best_first(), Findings.together(self.found).best_first()]
-        )
+        parts = [*self.finer, self.found]
+        return Findings.together([Findings.together(part).best_first() for part in parts])
 
     def run(self, crew: Crew) -> None:
         """All stages; ``OutOfTimeError`` and Ctrl-C may end them."""
         segments = _COARSE if self.radius > 0.0 else SEGMENTS
         evaluator = GraspEvaluator(self.outline, self.radius, self.wanted, segments)
-        self.evaluator = evaluator
+        self.used.append(evaluator)
         self._every_triple(evaluator, crew)
         self._promising(evaluator, crew)
         starts = self._starts(_IMPROVED[0][0])
@@ -265,18 +265,23 @@ class _Search:
         return best.of(np.array((ideas + others)[:most], np.int64))
 
     def _between_finer_chords(self, crew: Crew) -> None:
-        """The best grasps of discs again where their levels are good to 1e-4, and polished."""
-        finer = GraspEvaluator(self.outline, self.radius, self.wanted, _FINE)
-        self.finer = finer
+        """The best grasps of discs again where their levels are better, and polished there."""
         best = Findings.together(self.found).best_first()
-        ideas = groups(best.contacts, self.outline.diameter, _AGAIN // 4)
-        rows = np.concatenate([group[:4] for group in ideas]) if ideas else np.empty(0, np.int64)
-        triples, points = finer.on_features(best.of(rows))
-        crew.grasps(finer, triples, points, "finer chords", self.fine)
-        again = Findings.together(self.fine).best_first()
-        first = [g[0] for g in groups(again.contacts, self.outline.diameter, _POLISHED[0][0])]
-        seeds = again.of(np.array(first, np.int64))
-        self._improve(finer, crew, seeds, _POLISHED, "polishing", self.fine)
+        for segments, most, rounds, stage in (
+            (_FINE, _AGAIN, _POLISHED, "polishing"), (SEGMENTS, 12, _LAST, "last polish"),
+        ):  # fmt: skip
+            evaluator = GraspEvaluator(self.outline, self.radius, self.wanted, segments)
+            self.used.append(evaluator)
+            ideas = groups(best.contacts, self.outline.diameter, most // 4)
+            rows = np.concatenate([g[:4] for g in ideas]) if ideas else np.empty(0, np.int64)
+            triples, points = evaluator.on_features(best.of(rows))
+            fine: list[Findings] = []
+            self.finer.insert(0, fine)
+            crew.grasps(evaluator, triples, points, f"{stage}, to begin with", fine)
+            again = Findings.together(fine).best_first()
+            seeds = [g[0] for g in groups(again.contacts, self.outline.diameter, rounds[0][0])]
+            self._improve(evaluator, crew, again.of(np.array(seeds, np.int64)), rounds, stage, fine)
+            best = Findings.together(fine).best_first()
 
     def _improve(
         self, evaluator: GraspEvaluator, crew: Crew, seeds: Findings,
