@@ -5,7 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from icage.arrays import FloatArray
 from icage.cells.free_space import Search, Tree
+from icage.cells.kernels.columns import (
+    BIRTH_SIGMA,
+    BIRTH_WX,
+    BIRTH_WY,
+    BORN_FINGER,
+    BORN_SLOT,
+)
+from icage.cells.kernels.region import least_points
 from icage.errors import MethodError
 
 if TYPE_CHECKING:
@@ -30,6 +41,24 @@ class CageWork:
     of the true curve: what it joins below that is the target's to the true curve."""
     remembered: dict[str, object] = field(default_factory=dict[str, object])
     """Point location and escape levels, built when first asked for (see membership)."""
+
+    def least_hands(self, below: float) -> FloatArray:
+        """(n, 3, 2) fingers at the least points of the visited cells born below a level, [unit]."""
+        found, tree = self.search, self.tree
+        birth = tree.birth[:, BIRTH_SIGMA]
+        use = np.flatnonzero((birth > 0.0) & (birth < below))
+        if not len(use):
+            return np.empty((0, len(found.free_space.z), 2))
+        free_space = found.free_space
+        low, at = tree.birth[use], tree.birth_at[use]
+        points = least_points(
+            free_space.pieces, free_space.z, 0, np.ascontiguousarray(found.cells[use]),
+            low[:, BIRTH_WX], low[:, BIRTH_WY], at[:, BORN_FINGER], at[:, BORN_SLOT],
+        )  # fmt: skip
+        d = points[:, 0] + 1j * points[:, 1]
+        w = low[:, BIRTH_WX] + 1j * low[:, BIRTH_WY]
+        hands = d[:, None] + w[:, None] * free_space.hand.z
+        return np.stack([hands.real, hands.imag], axis=2) + free_space.origin
 
 
 def work_of(cage: Cage) -> CageWork | None:
