@@ -92,7 +92,7 @@ class KeptRows:
             lines = [
                 *changes({"format": old["format"]}, {"format": self.document["format"]}),
                 *changes(old["options"], self.document["options"]),
-                *changes(old["versions"], self.document["versions"]),
+                *changes(old["versions"], self.document["versions"], shown=str),
             ]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(f"--out {place!r}: its own words cannot be read: {error!r}") from error

@@ -89,7 +89,7 @@ def read_one(file: str, path: Path, options: SearchOptions) -> Readable | Unread
         case = _read(path, options)
     except Exception as error:
         # a file's name below the folder says enough, and it is the same wherever the folder is
-        why = reason(error).replace(f"{path.parent}{os.sep}", "")
+        why = reason(error).replace(f"{path.parent}{os.sep}", "").removeprefix(f"{path.name}: ")
         return Unreadable(file, _digest({"why": why}), seed, why)
     content = {
         "name": case.name, "unit": case.unit, "vertices": case.outline.vertices.tolist(),

@@ -290,7 +290,11 @@ def _is_folder(args: argparse.Namespace) -> bool:
     from icage.formats.load import is_shipped
 
     shipped = is_shipped(args.object)
-    if Path(args.object).is_dir() and not shipped:
+    try:
+        folder = Path(args.object).is_dir() and not shipped
+    except OSError:  # a name that no file can have: the error comes from whoever reads it
+        folder = False
+    if folder:
         for name in _OF_ONE:
             if getattr(args, name) is not None:
                 raise InputError(f"--{name} is for one object; {args.object!r} is a folder")

@@ -149,4 +149,4 @@ def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str
         yield f"the case was {old['name']!r}, is {new['name']!r}"
     if old["case"] != new["case"] or old["unit"] != new["unit"]:
         yield "the case is another one"
-    yield from changes(old["versions"], new["versions"])
+    yield from changes(old["versions"], new["versions"], shown=str)
