@@ -265,6 +265,7 @@ def test_no_table_of_grasps_is_not_replaced(folder: Path, grasps: Callable[..., 
 # ---------------------------------------------------------------------------- objects that fail
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="file names and pipes of Linux")
 def test_every_object_fails_by_itself(folder: Path, grasps: Callable[..., Result]):
     """Nothing that lies in a folder ends the search of the others."""
     shutil.rmtree(folder)
