@@ -15,7 +15,7 @@ from icage.units import Unit
 
 FORMAT: Final = "icage-grasp-table/1"
 
-_NO_MATTER: Final = ("mujoco",)
+_NO_MATTER: Final = ("mujoco", "closings")
 """Versions that are recorded elsewhere: a grasp hangs on no engine."""
 
 
@@ -77,7 +77,7 @@ def options_of(document: Mapping[str, Any]) -> SearchOptions:
     near = plain.pop("near")
     wanted = Wanted(
         plain.pop("aim"), plain.pop("corners"), None if near is None else tuple(near),
-        HandLimits(**limits), tuple(tuple(box) for box in plain.pop("avoid")),
+        HandLimits(**limits), tuple(tuple(one) for one in plain.pop("avoid")),
         plain.pop("tolerance"),
     )  # fmt: skip
     return SearchOptions(wanted, **plain)
