@@ -2,10 +2,12 @@
 
     python -m benchmarks.closing                    all targets, one thread
     python -m benchmarks.closing --trials 1000 --threads 2 --json FILE
+    python -m benchmarks.closing --against CHECKOUT [--outcomes]    beside another checkout
 
 Starts are drawn as ``replay`` draws them: from the whole guaranteed set of each grasp's plan. Every
 closing must end in the target, or the figure means nothing: the last column tells. Early stop is
-included; free travel before the first touch is computed, not simulated. Seconds are processor
+included; free travel before the first touch and the way to where a grasp may be are computed, not
+simulated, so "step / bare" is below 1. Seconds are processor
 seconds of all threads, so a busy machine blurs the figures less, and the best of ``--passes``: the
 neighbours of a shared machine only ever add to it. Machines, and one machine from minute to minute,
 differ by a factor of two: compare the ratios, to ``mj_step`` alone over the same motion and to the
@@ -23,6 +25,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from benchmarks.closing_against import ALL, GRASPS, SETS, compare_outcomes, compare_speed
 from benchmarks.planner import timed
 from icage.planner import plan
 from icage.sampling import draw_starts
@@ -51,7 +54,16 @@ def main() -> None:
     parser.add_argument("--passes", type=int, default=5)
     parser.add_argument("--json", type=Path, help="write the figures")
     parser.add_argument("--update-baseline", action="store_true")
+    parser.add_argument("--against", type=Path, help="a checkout of another commit")
+    parser.add_argument("--outcomes", action="store_true", help="with it: every verdict")
+    parser.add_argument("--only", nargs="*", choices=ALL, help="grasps for --against")
+    parser.add_argument(
+        "--sets", nargs="*", choices=SETS, default=list(SETS), help="starts for --outcomes"
+    )
     options = parser.parse_args()
+    if options.against is not None:
+        _against(options)
+        return
     sample = np.random.default_rng(1).random(2_000_000)
     yardstick = float(np.median([timed(np.sort, sample) for _ in range(5)]))
     base = json.loads(BASELINE.read_text()) if BASELINE.exists() else None
@@ -70,8 +82,24 @@ def main() -> None:
     apart = triangle()  # no corner: slow to settle, and starts near the target only
     starts = starts_near(apart, options.trials, seed=1, opening=1.1)
     figures |= _report("triangle", apart, starts, options, yardstick, base)
+    ratios = {k: v for k, v in (base or {}).items() if "_ratio_" in k}
     for path in [BASELINE] * options.update_baseline + [options.json] * bool(options.json):
-        path.write_text(json.dumps(figures, indent=1) + "\n")
+        path.write_text(json.dumps(figures | ratios, indent=1) + "\n")
+
+
+def _against(options: argparse.Namespace) -> None:
+    """Beside another checkout: verdicts, or speed, which the baseline keeps too."""
+    if options.outcomes:
+        differ = compare_outcomes(
+            options.against, options.trials, options.only or list(ALL), options.sets
+        )
+        raise SystemExit(f"{differ} verdicts differ" if differ else 0)
+    figures = compare_speed(
+        options.against, options.trials, options.passes, options.only or list(GRASPS)
+    )
+    for path in [BASELINE] * options.update_baseline + [options.json] * bool(options.json):
+        kept = json.loads(path.read_text()) if path.exists() else {}
+        path.write_text(json.dumps(kept | figures, indent=1) + "\n")
 
 
 def guaranteed_starts(grasp: KnownGrasp, count: int) -> np.ndarray:

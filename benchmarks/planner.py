@@ -1,33 +1,69 @@
 """Speed of the planner on one core, warm: ``python -m benchmarks.planner [--json FILE]``.
 
 Processor seconds. Every figure is also given as a ratio to a yardstick measured in the same run
-(sorting two million doubles), so that runs on different machines can be compared. Outlines are
-seeded random stars with 100 vertices and targets of every kind; medians over many targets.
+(sorting two million doubles), so that runs on different machines can be compared.
+
+- one search, one plan, regions and 100,000 queries on seeded random stars with 100 vertices and
+  targets of every kind; medians over many targets;
+- ``--growth``: one plan by either method on stars with 20 to 600 vertices: least, median and
+  largest of the targets, and the exponent of a fitted power of n;
+- ``--round``: one plan by either method on round objects, each in a process of its own with its
+  peak memory.
+
+The committed baseline holds, for every figure, the value, whether less is better, and the factor
+within which another run counts as the same.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import resource
+import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
+from icage.arrays import FloatArray
 from icage.cells.free_space import search
 from icage.cells.membership import query
 from icage.cells.regions import caging_regions
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.wanted import Wanted
+from icage.kernels.compiled import machine_code_at_once
 from icage.outline import Outline
-from icage.planner import plan
+from icage.planner import MethodName, plan
 
 BASELINE = Path(__file__).with_name("planner_baseline.json")
 QUERIES = 100_000
+SIZES = (20, 40, 80, 150, 300, 600)
+"""Vertices of the stars of ``growth``."""
+
+ROUND = {
+    "regular_99": 99,
+    "regular_199": 199,
+    "regular_500": 500,
+    "regular_1000": 1000,
+    "ellipse_200": 200,
+    "notched_circle_200": 200,
+    "gear_240": 240,
+    "rounded_square_200": 200,
+}
+"""Round objects, and their vertices."""
+
+METHODS: tuple[MethodName, ...] = ("cells", "contact-space")
+ONE_METHOD = ("regular_1000", "gear_240")
+"""Round objects on which the contact space is not asked: minutes."""
+
+SAME = 1.5
+"""[1] Another run within this factor of the baseline, each over its own yardstick, is as fast."""
 
 
 def star(n: int, rng: np.random.Generator) -> Outline:
@@ -47,11 +83,10 @@ def timed(work: Callable[..., object], *arguments: object) -> float:
 def targets(outline: Outline, count: int, rng: np.random.Generator) -> list[np.ndarray]:
     """Contacts of immobilizing grasps of the outline, half of them with a useful cage."""
     bench = GraspEvaluator(outline, 0.0, Wanted())
-    jobs = bench.jobs(rng)
+    triples, points = bench.triples()
     found: list[np.ndarray] = []
-    for k in rng.permutation(len(jobs)):
-        triple, p = jobs[k]
-        candidate = bench.at(triple, p)
+    for k in rng.permutation(len(triples)):
+        candidate = bench.at(triples[k], points[k])
         if candidate is None:
             continue
         if candidate.score > 1.02 or len(found) % 2 == 0:
@@ -112,22 +147,162 @@ def measure() -> dict[str, float]:
     }
 
 
+def growth(count: int = 9, sizes: tuple[int, ...] = SIZES) -> dict[str, float]:
+    """One plan, [s], as ``plan_<method>_n<n>_<least, median, largest>``, and exponents."""
+    rng = np.random.default_rng(3)
+    figures: dict[str, float] = {}
+    medians: dict[MethodName, list[float]] = {method: [] for method in METHODS}
+    for n in sizes:
+        outline = star(n, rng)
+        grasps = targets(outline, count, rng)
+        for method in METHODS:
+            plan(outline, grasps[0], method=method)
+            times = [timed(partial(plan, method=method), outline, grasp) for grasp in grasps]
+            name = f"plan_{method}_n{n}"
+            figures[f"{name}_least"] = float(np.min(times))
+            figures[f"{name}_median"] = float(np.median(times))
+            figures[f"{name}_largest"] = float(np.max(times))
+            medians[method].append(figures[f"{name}_median"])
+    for method in METHODS:
+        slope = np.polyfit(np.log(sizes), np.log(medians[method]), 1)[0]
+        figures[f"plan_{method}_exponent"] = float(slope)
+    return figures
+
+
+def round_object(name: str) -> tuple[FloatArray, FloatArray]:
+    """Vertices (n, 2) of a round object, and contacts (3, 2) whose normals meet, far apart."""
+    n = ROUND[name]
+    angle = 2.0 * np.pi * np.arange(n) / n
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    shapes = {
+        "ellipse": circle * [1.0, 0.7],
+        "notched_circle": np.vstack([circle[4:-4], [[0.4, -0.12], [0.4, 0.12]]]),
+        "gear": circle * np.where(np.arange(n) % 20 < 10, 1.0, 0.85)[:, None],
+        "rounded_square": np.sign(circle) * np.abs(circle) ** 0.5,
+    }
+    vertices = shapes.get(name.rsplit("_", 1)[0], circle)
+    third = len(vertices) // 3
+    best: tuple[float, FloatArray] | None = None
+    for first, second, last in product(range(0, third, third // 4), range(-9, 10), range(-9, 10)):
+        found = concurrent(vertices, first, first + third + second, first + 2 * third + last)
+        if found is not None and (best is None or found[0] < best[0]):
+            best = found
+    assert best is not None, f"{name}: no three edges whose normals meet"
+    return vertices, best[1]
+
+
+def concurrent(
+    vertices: FloatArray, first: int, second: int, last: int
+) -> tuple[float, FloatArray] | None:
+    """Contacts in the middles of two edges and where a third one's normal meets theirs.
+
+    With how far their forces are from equal ones; None if the normals do not meet so.
+    """
+    at = np.array([first, second, last]) % len(vertices)
+    start = vertices[at]
+    side = vertices[(at + 1) % len(vertices)] - start
+    length = np.hypot(*side.T)
+    along = side / length[:, None]
+    middle = start[:2] + 0.5 * side[:2]
+    if np.abs(np.linalg.det(along[:2])) < 0.5:
+        return None
+    meeting = np.linalg.solve(along[:2], (along[:2] * middle).sum(axis=1))
+    foot = float((meeting - start[2]) @ along[2])
+    forces = -np.linalg.solve(along[:2].T, along[2])
+    if not 0.2 * length[2] < foot < 0.8 * length[2] or (forces < 0.3).any():
+        return None
+    return float(np.abs(forces - 1.0).max()), np.vstack([middle, start[2] + foot * along[2]])
+
+
+def one_round(name: str, method: MethodName) -> dict[str, float]:
+    """Seconds of one plan (least of up to three within a minute), peak memory, what was found."""
+    vertices, contacts = round_object(name)
+    started = time.process_time()
+    times: list[float] = []
+    cage = plan(vertices, contacts, method=method)  # compiled or loaded now, and its memory taken
+    while len(times) < 3 and time.process_time() - started < 60.0:
+        times.append(timed(partial(plan, method=method), vertices, contacts))
+    return {
+        "seconds": min(times, default=time.process_time() - started),
+        "peak_MB": peak_of_this_program(),
+        "sigma_0": cage.sigma_0,
+        "sigma_max": cage.sigma_max or math.inf,
+        "grasps": len(cage.grasps),
+    }
+
+
+def peak_of_this_program() -> float:
+    """Peak memory, [MB]; ``ru_maxrss`` would hold what the parent had before the program began."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(float(line.split()[1]) / 1024.0 for line in lines if line.startswith("VmHWM"))
+
+
+def rounds() -> dict[str, float]:
+    """``round_<object>_<method>_<seconds or MB>``; the levels of both methods must agree."""
+    figures: dict[str, float] = {}
+    for name in ROUND:
+        levels: list[float] = []
+        for method in METHODS[:1] if name in ONE_METHOD else METHODS:
+            asked = [sys.executable, "-m", "benchmarks.planner", "--one-round", name, method]
+            answer = subprocess.run(asked, check=True, capture_output=True, text=True)
+            row = json.loads(answer.stdout)
+            figures[f"round_{name}_{method}_seconds"] = row["seconds"]
+            figures[f"round_{name}_{method}_MB"] = row["peak_MB"]
+            levels.append(row["sigma_max"] / row["sigma_0"])
+            print(f"{name}, {method}: {row}", flush=True)
+        if len(levels) == 2 and not math.isclose(levels[0], levels[1], rel_tol=1e-7):
+            raise AssertionError(f"{name}: the methods disagree, {levels}")
+    return figures
+
+
+def tolerance_of(name: str) -> float:
+    """[1] The factor, or for an exponent the difference, within which a figure is the same."""
+    return 0.3 if name.endswith("exponent") else SAME
+
+
 def main() -> int:
-    """Measure twice (the first warms the caches), print, compare with the baseline."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path, help="write the figures")
+    """Measure (once before, to warm up), print, compare with the baseline."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--json", type=Path, help="write the figures, name: value")
+    parser.add_argument("--growth", action="store_true", help="and plans of 20 to 600 vertices")
+    parser.add_argument("--round", action="store_true", help="and round objects")
+    parser.add_argument("--one-round", nargs=2, metavar=("OBJECT", "METHOD"))
     parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
+    machine_code_at_once()
+    if options.one_round:
+        name, method = options.one_round
+        print(json.dumps(one_round(name, method)))
+        return 0
     measure()
     figures = measure()
-    base = json.loads(BASELINE.read_text()) if BASELINE.exists() else figures
-    print(f"{'figure':<32} {'value':>12} {'/ yardstick':>12} {'baseline':>12}")
+    if options.growth:
+        growth(2, SIZES[:2])
+        figures |= growth()
+    if options.round:
+        figures |= rounds()
+    base = json.loads(BASELINE.read_text()) if BASELINE.exists() else {}
+    print(f"{'figure':<46} {'value':>12} {'/ yardstick':>12} {'baseline':>12}")
     for name, value in figures.items():
-        unit = 1.0 if name.endswith("MB") else figures["yardstick"]
-        was = base[name] / (1.0 if name.endswith("MB") else base["yardstick"])
-        print(f"{name:<32} {value:12.6g} {value / unit:12.4g} {was:12.4g}")
+        absolute = name.endswith(("MB", "exponent"))
+        unit = 1.0 if absolute else figures["yardstick"]
+        was, verdict = math.nan, ""
+        if name in base:
+            was = base[name]["value"] / (1.0 if absolute else base["yardstick"]["value"])
+            within = base[name]["tolerance"]
+            worse = (
+                value - was > within if name.endswith("exponent") else value / unit > was * within
+            )
+            verdict = "slower" if worse else ""
+        print(f"{name:<46} {value:12.6g} {value / unit:12.4g} {was:12.4g} {verdict}")
+    rows = {
+        name: {"value": value, "better": "less", "tolerance": tolerance_of(name)}
+        for name, value in figures.items()
+    }
     if options.update_baseline:
-        BASELINE.write_text(json.dumps(figures, indent=1) + "\n")
+        BASELINE.write_text(json.dumps(base | rows, indent=1) + "\n")
     if options.json is not None:
         options.json.write_text(json.dumps(figures, indent=1) + "\n")
     return 0

@@ -3,9 +3,10 @@
     python -m benchmarks.study                         ratios beside the baseline
     python -m benchmarks.study --long [--threads 2]    100,000 frictionless closings: time, memory
 
-A bare loop steps the same model from the same starts, every simulation for as long as the study
-took it, and looks at nothing. Both in the same run, on one thread, in processor seconds, best of
-``--passes``; the study's share is everything: drawing the starts, asking the planner, closing,
+A bare loop takes every closing of the study to where its object has been pushed
+(``sim.closing.push``), steps the same model from there, every simulation for as long as the study
+took it, and looks at nothing more. Both in the same run, on one thread, in processor seconds, best
+of ``--passes``; the study's share is everything: drawing the starts, asking the planner, closing,
 watching, judging, writing shards and the table.
 """
 
@@ -27,6 +28,8 @@ from experiments.study.run.session import Session, session_of
 from experiments.study.run.shard import run_trials
 from experiments.study.run.shards import SHARD, on_threads, run_study
 from sim.closing.approach import approached
+from sim.closing.push import push
+from sim.closing.step_check import StepCheck
 from sim.closing.varied_shapes import LOOK_EVERY
 from sim.world.engine import Batch
 
@@ -118,11 +121,13 @@ def _bare(session: Session) -> float:
     for first in range(0, total, SHARD):
         ran = run_trials(study, np.arange(first, min(first + SHARD, total)))
         scene = study.variants.planned.scene
-        begin = approached(scene, scene.start_positions(ran.starts))
-        left = np.array(ran.closings.closings.steps)
-        batch = Batch(scene.model, nsim=len(left), nthread=1)
-        batch.qpos, batch.ctrl = begin, scene.closing_force
+        qpos = scene.start_positions(ran.starts)
+        batch = Batch(scene.model, nsim=len(qpos), nthread=1)
         start = time.process_time()
+        check = StepCheck.over(scene, qpos, LOOK_EVERY)
+        begun = push(scene, approached(scene, qpos), check)
+        left = ran.closings.closings.steps - check.steps
+        batch.qpos, batch.qvel, batch.ctrl = begun.positions, begun.velocities, scene.closing_force
         ids = np.flatnonzero(left > 0).astype(np.int32)
         while len(ids):
             batch.step(ids, nstep=LOOK_EVERY)

@@ -130,6 +130,7 @@ class Cage(Value):
     sigma_first: float | None
     sigma_max: float | None
     sigma_max_upper: float | None = None
+    sigma_max_lower: float | None = None
     sigma_first_upper: float | None = None
     sigma_first_converged: bool | None = None
     sigma_largest: float | None = None
@@ -306,6 +307,7 @@ def not_a_cage(
         sigma,
         sigma,
         sigma_max_upper=sigma if radius else None,
+        sigma_max_lower=sigma if radius else None,
         sigma_first_upper=sigma if radius else None,
         sigma_first_converged=True if radius else None,
     )

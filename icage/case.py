@@ -143,7 +143,8 @@ class Case(Value):
             What the hand can be; ``HandLimits()`` if None: no angle below 15 degrees, fingers 2 %
             of the object's diameter apart.
         avoid:
-            Boxes (x_low, y_low, x_high, y_high), [unit], into which no finger may reach.
+            Stretches of the outline that no finger may touch, each from one arclength to another,
+            [unit], counterclockwise from the first vertex.
         tolerance:
             [unit] How wrong the outline may be: smaller or shallower grasps are left out.
         workers:
@@ -168,7 +169,7 @@ class Case(Value):
         True
         """
         from icage.grasps.of_case import best_of_case, grasps_in
-        from icage.grasps.wanted import HandLimits, Wanted, as_boxes
+        from icage.grasps.wanted import HandLimits, Wanted, as_stretches
 
         one_of(aim, ("first", "cage"), "aim")
         a_count(top, "top")
@@ -176,7 +177,7 @@ class Case(Value):
         draws = np.random.default_rng(0) if rng is None else rng
         an_instance(draws, np.random.Generator, "rng")
         hand = HandLimits() if limits is None else an_instance(limits, HandLimits, "limits")
-        wanted = Wanted(aim, limits=hand, avoid=as_boxes(avoid), tolerance=tolerance)
+        wanted = Wanted(aim, limits=hand, avoid=as_stretches(avoid), tolerance=tolerance)
         if seconds is not None and a_number(seconds, "seconds") <= 0.0:
             raise InputError(f"seconds is {seconds:g}; more than 0 is needed")
         return grasps_in(best_of_case(self, top, wanted, draws, workers, progress, seconds), aim)

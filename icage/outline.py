@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike
-from scipy.spatial import ConvexHull, QhullError
-from scipy.spatial.distance import pdist
-from shapely.validation import explain_validity
 
 from icage.arrays import FloatArray, read_only, real_numbers
 from icage.errors import GeometryError, OutlineError
@@ -27,6 +25,12 @@ SMALLEST_DIAMETER = 1e-12
 _THINNEST = 1e-9
 """[diameter^2] Area below which a polygon counts as having none: a triangle of this area is seven
 times as wide as the bumps that the planner takes for straight (``tolerance.MERGE_VERTEX``)."""
+
+_FEW = 60
+"""Vertices of which all pairs are compared sooner than their convex hull is found."""
+
+_ROWS = 256
+"""Vertices that are compared with all others at a time, so that no table grows with the square."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -98,7 +102,7 @@ class Outline(Value):
             )
         polygon = shapely.Polygon(points)
         if not polygon.is_valid:
-            raise OutlineError(f"the outline is not simple: {explain_validity(polygon)}")
+            raise OutlineError(f"the outline is not simple: {shapely.is_valid_reason(polygon)}")
         if not polygon.area > _THINNEST * diameter**2:
             raise OutlineError(
                 f"the outline has no area: {polygon.area / diameter**2:.3g} of its diameter "
@@ -153,10 +157,11 @@ def _as_points(vertices: ArrayLike) -> FloatArray:
 
 def _diameter(points: FloatArray) -> float:
     """Largest distance between two vertices."""
-    if len(points) < 60:
-        return float(pdist(points).max())
-    try:
-        hull = points[ConvexHull(points - points[0]).vertices]
-    except QhullError:
-        hull = points
-    return float(pdist(hull).max())
+    hull = points
+    if len(points) >= _FEW:
+        hull = shapely.get_coordinates(shapely.MultiPoint(points).convex_hull)
+    largest = 0.0
+    for k in range(0, len(hull), _ROWS):
+        x, y = (hull[k : k + _ROWS, None] - hull[None, k:]).transpose(2, 0, 1)
+        largest = max(largest, float((x * x + y * y).max()))
+    return math.sqrt(largest)

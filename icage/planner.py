@@ -13,7 +13,7 @@ from icage.case import Case
 from icage.cells.method import CELLS
 from icage.checks import one_of
 from icage.contacts import as_contacts
-from icage.discs.brackets import plan_discs
+from icage.discs.on_curve import plan_discs
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
 from icage.grasp import Grasp

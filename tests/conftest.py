@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+# tests compile what they need themselves: no process works on behind them
+os.environ["ICAGE_COMPILE_BEHIND"] = "0"
 
 settings.register_profile(
     "repeatable",

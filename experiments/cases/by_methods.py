@@ -9,7 +9,6 @@ from icage.agreement import disagreements
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.regions import FingerRegion, caging_regions
-from icage.contact_space.method import ContactSpace
 from icage.planner import plan
 
 
@@ -35,6 +34,8 @@ def planned(case: Case, method: str, *, tunnels: bool = True) -> Answer:
     cells = plan(case.outline, case.contacts, case.finger_radius)
     if method == "cells":
         return Answer(cells, cells, [])
+    from icage.contact_space.method import ContactSpace  # only now: many more kernels
+
     engine = ContactSpace(tunnels=tunnels)
     cage = plan(case.outline, case.contacts, case.finger_radius, engine)
     if method == "contact-space":

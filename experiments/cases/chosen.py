@@ -17,9 +17,6 @@ from icage.cage import Cage
 from icage.case import Case
 from icage.errors import InputError
 from icage.formats.case_json import grasp_name
-from icage.grasps.of_case import best_of_case
-from icage.grasps.planned import score
-from icage.grasps.wanted import Wanted
 
 SEARCHED: Final = 10
 """Grasps that are planned before the best is taken: as many as ``icage grasps`` lists."""
@@ -55,7 +52,12 @@ def chosen(case: Case, args: argparse.Namespace, count: int = 1) -> Chosen:
     """
     if case.target is not None:
         return Chosen((case,))
+    from icage.grasps.of_case import best_of_case  # only now: the search is a planner of its own
+    from icage.grasps.wanted import Wanted
+    from icage.kernels.compiled import long_job
+
     check_radius(case)
+    long_job()
     rng, workers = np.random.default_rng(0), min(WORKERS, os.cpu_count() or 1)
     with search_bar() as bar:
         found = best_of_case(case, max(SEARCHED, count), Wanted("first"), rng, workers, bar)
@@ -119,6 +121,8 @@ def say_how_to_keep(found: Chosen) -> None:
 
 
 def _levels(cage: Cage, unit: str) -> str:
+    from icage.grasps.planned import score
+
     first, top = (
         "never" if level is None else f"{level:.6g}" for level in (cage.sigma_first, cage.sigma_max)
     )

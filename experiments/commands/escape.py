@@ -42,7 +42,9 @@ def run(args: argparse.Namespace) -> int:
     from experiments.escape.run import escape  # only now: engine and planner take a second to load
     from experiments.io.progress import stage_bar
     from icage.formats.json_out import write_json
+    from icage.kernels.compiled import long_job
 
+    long_job()
     found = chosen(case, args)
     say_how_to_keep(found)
     (case,) = found.cases

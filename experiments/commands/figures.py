@@ -52,7 +52,9 @@ def run(args: argparse.Namespace) -> int:
     from experiments.cases.case_files import ONE, check_case_files, write_case_files
     from experiments.cases.chosen import chosen
     from experiments.figures.paper.figures import write_figures
+    from icage.kernels.compiled import long_job
 
+    long_job()
     if case.target is None:
         check_case_files("--out", out, [ONE], case.sources)
     found = chosen(case, args)

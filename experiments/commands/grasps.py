@@ -42,6 +42,14 @@ So phi_2 is measured outside the triangle: an equilateral hand is (60, 120),
 not (60, 60). Allowed is 0 < phi_1 < phi_2 < 180."""
 
 
+def stretch_ends(text: str) -> tuple[float, float]:
+    """``FROM:TO``, two arclengths."""
+    start, colon, end = text.partition(":")
+    if not colon:
+        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:TO, two arclengths")
+    return not_negative(start), not_negative(end)
+
+
 def add_parser(subparsers: Any) -> None:
     """Options of the command."""
     parser = subparsers.add_parser(
@@ -129,12 +137,13 @@ def add_parser(subparsers: Any) -> None:
     )
     hand.add_argument(
         "--avoid",
-        type=number,
-        nargs=4,
+        type=stretch_ends,
         action="append",
         default=[],
-        metavar=("X0", "Y0", "X1", "Y1"),
-        help="a box that no finger of the grasp may reach into; may be given several times",
+        metavar="FROM:TO",
+        help="a stretch of the outline that no finger of the grasp may touch, by arclength in its "
+        "unit, counterclockwise from the first vertex that `icage outline` lists; may be given "
+        "several times",
     )
     hand.add_argument(
         "--tolerance",
@@ -220,6 +229,9 @@ def run(args: argparse.Namespace) -> int:
     check_output("--figure", args.figure, *case.sources)
     if args.figure is not None and Path(args.figure).suffix.lower() != ".svg":
         raise InputError(f"--figure {args.figure!r}: a name ending in .svg is needed")
+    from icage.kernels.compiled import long_job
+
+    long_job()
     if args.phi is not None and args.within is None:
         _refuse_limits(args)
         planned = _of_one_hand(case, radius, args.phi, args.aim)
@@ -316,11 +328,13 @@ def _of_folder(args: argparse.Namespace) -> int:
 
     from experiments.collection.options import SearchOptions
     from experiments.collection.run import search_folder
+    from icage.kernels.compiled import long_job
 
     options = SearchOptions(
         wanted_of(args), args.top or 1, args.seed, args.finger_radius, args.width, args.unit,
         args.seconds,
     )  # fmt: skip
+    long_job()
     lines = search_folder(Path(args.object), args.out, options, args.workers, args.scheduler)
     print("\n".join(lines))
     return 0
@@ -372,8 +386,8 @@ def _write_cases(case: Case, cages: tuple[Cage, ...], args: argparse.Namespace) 
     for option, default in _WRITTEN:
         if (value := getattr(args, option.replace("-", "_"))) != default:
             command += f" --{option} {shlex.quote(str(value))}"
-    for box in args.avoid:
-        command += " --avoid " + " ".join(map(repr, box))
+    for ends in args.avoid:
+        command += " --avoid {!r}:{!r}".format(*ends)
     folder = Path(args.cases)
     found = Chosen(cases_from(case, cages), command)
     names = {LISTED.format(k) for k in range(1, len(cages) + 1)}
@@ -402,7 +416,7 @@ def wanted_of(args: argparse.Namespace) -> Wanted:
     """What the options ask for."""
     from math import inf, radians
 
-    from icage.grasps.wanted import LEAST_ANGLE, HandLimits, Wanted, as_boxes
+    from icage.grasps.wanted import LEAST_ANGLE, HandLimits, Wanted, as_stretches
     from icage.hand import HandShape
 
     near = None
@@ -415,7 +429,9 @@ def wanted_of(args: argparse.Namespace) -> Wanted:
         sigma_least=args.sigma_min_of_hand or 0.0,
         sigma_most=inf if args.sigma_max_of_hand is None else args.sigma_max_of_hand,
     )
-    return Wanted(args.aim, args.corners, near, limits, as_boxes(args.avoid), args.tolerance or 0.0)
+    return Wanted(
+        args.aim, args.corners, near, limits, as_stretches(args.avoid), args.tolerance or 0.0
+    )
 
 
 def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
@@ -515,7 +531,8 @@ def _limit_words(case: Case, args: argparse.Namespace) -> str:
     if args.sigma_max_of_hand is not None:
         words.append(f"that open to {args.sigma_max_of_hand:g}{unit}")
     if args.avoid:
-        words.append(f"outside {len(args.avoid)} box{'es' if len(args.avoid) > 1 else ''}")
+        plural = "es" if len(args.avoid) > 1 else ""
+        words.append(f"that touch nothing on {len(args.avoid)} stretch{plural} of the outline")
     return ", ".join(words)
 
 

@@ -68,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
     from experiments.regress.table import markdown, terminal
     from icage.formats.json_out import write_json  # only now: engine and planner take time to load
     from icage.formats.whole_files import whole_file
+    from icage.kernels.compiled import long_job
 
     level = "fast" if args.fast else "full" if args.full else "default"
     folder = None if args.cases is None else Path(args.cases)
@@ -75,6 +76,7 @@ def run(args: argparse.Namespace) -> int:
     place = baseline or baseline_path(level)
     if args.update_baseline:
         check_output("--baseline", str(place))
+    long_job()
     with stage_bar() as report:
         done = regress(level, folder, baseline, args.workers or 0, report)
     document = {"format": "icage-regress/1", "level": level, "cases": list(done.rows)}

@@ -82,6 +82,7 @@ def run(args: argparse.Namespace) -> int:
         check_discs,
         replay,
     )
+    from icage.kernels import background
     from icage.sampling import SamplingError
 
     sources = [file for case in cases for file in case.sources]
@@ -94,6 +95,7 @@ def run(args: argparse.Namespace) -> int:
         from sim.camera.renderer import check_graphics
 
         check_graphics()
+    background.start(awaited=True)
     found = chosen(cases[0], args, count) if searching else Chosen(cases)
     earlier = earlier_case_files(folder, NUMBERED, sources)
     own = [NUMBERED.format(k) for k in range(1, len(found.cases) + 1)] if searching else []

@@ -41,7 +41,9 @@ def run(args: argparse.Namespace) -> int:
     )
     from experiments.shake.document import shake_document, shake_summary
     from experiments.shake.run import ShakeError, shake_case
+    from icage.kernels.compiled import long_job
 
+    long_job()
     found = chosen(case, args)
     say_how_to_keep(found)
     (case,) = found.cases

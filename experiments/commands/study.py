@@ -88,8 +88,10 @@ def run(args: argparse.Namespace) -> int:
         return 0
 
     from experiments.study.run.session import run_session, session_of
+    from icage.kernels.compiled import long_job
 
     session: Session = session_of(_given(args), args.out, args.resume, args.shard)
+    long_job()
     lines = run_session(session, args.threads, args.scheduler, args.figures)
     print("\n".join(lines))
     return 0

@@ -7,15 +7,17 @@ from importlib.metadata import version
 from typing import Final
 
 import icage
+from sim.closing.outcome import RULES
 
 RECORDED: Final = ("mujoco", "numpy", "scipy", "shapely", "numba")
 
 
 def versions() -> dict[str, str]:
-    """Name to version: icage, Python, the libraries that compute, the platform."""
+    """Name to version: icage, Python, the libraries that compute, our closings, the platform."""
     return {
         "icage": icage.__version__,
         "python": platform.python_version(),
         **{name: version(name) for name in RECORDED},
+        "closings": RULES,
         "platform": f"{platform.system()} {platform.machine()}",
     }

@@ -23,10 +23,14 @@ from icage.kernels.locate import depth_inside
 from icage.sampling import SamplingError, Starts, draw_starts, has_rest
 from sim.closing.judge import ESCAPED, OTHER_GRASP, TARGET, Tolerances, Verdicts, judge
 from sim.closing.outcome import ClosingOutcomes
+from sim.world.config import SimConfig
 from sim.world.scene import Scene
 
 StartsOf = Literal["guaranteed", "rest", "outside"]
 SETS: Final[tuple[StartsOf, ...]] = ("guaranteed", "rest", "outside")
+
+WITNESS: Final = SimConfig(computed_contacts=0, remains=0.0)
+"""Every step by the engine, until nothing moves."""
 
 Close = Callable[[Scene, FloatArray], ClosingOutcomes]
 """An engine's closings from starts (N, 4)."""
@@ -92,7 +96,7 @@ def close_set(
 
     ``second`` is the cage by the other method, kept with the record.
     """
-    cage, scene = physical.cage, physical.simulated.scene()
+    cage, scene = physical.cage, physical.simulated.scene(WITNESS)
     starts = starts_of(cage, which, count, rng)
     if not len(starts):
         return None

@@ -36,6 +36,9 @@ JSON, TRIALS = "replay.json", "trials.parquet"
 
 _POSE = ("x", "y", "theta", "sigma")
 
+_BEFORE: Final = {"remains": 0.0, "computed_contacts": 0}
+"""Settings that a replay recorded before there were such did not have."""
+
 _LARGEST: Final = 1_000_000_000
 """[byte] Largest file read."""
 
@@ -136,7 +139,11 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
                 f"{str(folder / JSON)!r} was recorded before outline and settings were kept in it; "
                 "replay the case once more"
             )
-        kept: dict[str, Any] = {**run["config"], "solimp": tuple(run["config"]["solimp"])}
+        kept: dict[str, Any] = {
+            **_BEFORE,
+            **run["config"],
+            "solimp": tuple(run["config"]["solimp"]),
+        }
         config = SimConfig(**kept)
         x, y = run["plan"]["hand"]["unit_fingers"][2]
         return RecordedTrial(

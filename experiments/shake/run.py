@@ -101,7 +101,7 @@ def shake_case(physical: PhysicalCase, seed: int, config: SimConfig | None = Non
     """
     case, cage = physical.case, physical.cage
     rng = np.random.default_rng(seed)
-    scene = physical.simulated.scene(config)
+    scene = physical.simulated.scene(config or SimConfig(remains=0.0))
     held = supports(case.outline, cage.contacts, case.finger_radius)
     start = start_near_target(cage, held, rng)
     closings = close_many(scene, start.as_array()[None, :], threads=1)

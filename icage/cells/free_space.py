@@ -17,16 +17,16 @@ from icage.cells.kernels.columns import (
     EDGE_FROM,
     EDGE_SLOT,
     EDGE_TO,
+    MERGE_EDGE,
     PASS_SIGMA,
     PASS_WX,
-    PASS_WY,
     RECORD_BIRTH,
     RECORD_LEVEL,
     Ending,
 )
-from icage.cells.kernels.facet import ends_on_facet
+from icage.cells.kernels.facet import ends_on_facet, middles_on_facets
 from icage.cells.kernels.search import explore
-from icage.cells.kernels.tree import births, merge
+from icage.cells.kernels.tree import merge, visited_births
 from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -149,11 +149,17 @@ class Search:
 
     def edge_configuration(self, edge: int) -> Configuration:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
-        cell = self.cells[self.edges[edge, EDGE_FROM]]
-        finger, slot = int(self.edges[edge, EDGE_FINGER]), int(self.edges[edge, EDGE_SLOT])
-        wx, wy = self.edge_value[edge, PASS_WX], self.edge_value[edge, PASS_WY]
-        a, b = self.free_space.on_edge(cell, finger, slot, wx, wy)
-        return Configuration(0.5 * (a.d + b.d), a.w)
+        return self.edge_configurations([edge])[0]
+
+    def edge_configurations(self, edges: list[int]) -> list[Configuration]:
+        """The same for several edges."""
+        which = np.array(edges, dtype=np.int64)
+        rows = self.edges[which]
+        middle = middles_on_facets(
+            self.free_space.pieces, self.free_space.z, self.nodes[rows[:, EDGE_FROM]],
+            rows[:, EDGE_FINGER], rows[:, EDGE_SLOT], self.edge_value[which, PASS_WX:],
+        )  # fmt: skip
+        return [Configuration(complex(*m[:2]), complex(*m[2:])) for m in middle.tolist()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,13 +215,18 @@ def merge_tree(found: Search) -> Tree:
     """
     free_space = found.free_space
     inside = inside_cells(found)
-    born = births(
-        free_space.pieces, free_space.z, found.nodes[:inside], free_space.cap, free_space.worst
+    born = visited_births(
+        free_space.pieces, free_space.z, found.nodes[:inside], found.edges, found.edge_value,
+        free_space.cap, free_space.worst,
+    )  # fmt: skip
+    ends = found.edges[:, EDGE_FROM], found.edges[:, EDGE_TO]
+    below = below_escape(found)
+    sigma = found.edge_value[:, PASS_SIGMA]
+    used = np.flatnonzero(
+        (ends[0] < inside) & (ends[1] < inside) & (ends[1] >= 0) & (sigma < below)
     )
-    usable = (found.edges[:, EDGE_FROM] < inside) & (found.edges[:, EDGE_TO] < inside)
-    edges = np.where(usable[:, None], found.edges, -1)
-    value = np.where(usable, found.edge_value[:, PASS_SIGMA], np.inf)
-    joined = merge(born.value[:, BIRTH_SIGMA], edges, value, below_escape(found))
+    joined = merge(born.value[:, BIRTH_SIGMA].copy(), found.edges[used], sigma[used], below)
+    joined.merges[:, MERGE_EDGE] = used[joined.merges[:, MERGE_EDGE]]
     return Tree(
         birth=born.value,
         birth_at=born.where,

@@ -1,20 +1,34 @@
-"""The largest sigma in a component that never escapes. Our own."""
+"""The largest sigma in a component that never escapes. Our own.
+
+sigma is convex on a cell, so its maximum is at an extreme point: two fingers at corners of their
+pieces, or one at a corner and the others on edges.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from icage.cells.free_space import Search
-from icage.cells.kernels.largest import largest_sigma
+from icage.cells.kernels.largest import largest_in
+
+_INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
+the angle between two edges."""
 
 
 def largest_sigma_in(found: Search) -> float:
     """Largest |w| over all visited cells, [unit]."""
-    space = found.free_space
-    return float(largest_sigma(space.pieces, space.z, found.nodes, np.inf))
+    return _largest(found, np.inf)
 
 
 def opens_to(found: Search, level: float) -> bool:
     """Whether a visited cell holds a hand as wide as ``level``, [unit]."""
-    space = found.free_space
-    return bool(largest_sigma(space.pieces, space.z, found.nodes, level) >= level)
+    return _largest(found, level) >= level
+
+
+def _largest(found: Search, enough: float) -> float:
+    """The largest sigma, or any that is ``enough``."""
+    free_space = found.free_space
+    give = _INSIDE * free_space.pieces.diameter
+    cells = np.ascontiguousarray(found.cells)
+    return float(largest_in(free_space.pieces, free_space.z, cells, give, enough))

@@ -106,6 +106,8 @@ class Answers:
         work, node = self._cage.work, int(self._nodes[row])
         if work is None or node < 0 or self.verdict[row] >= ESCAPES:
             return ()
+        if work.polygon_first is not None and self.verdict[row] == TARGET:
+            return (0,)  # on the true curve there is no other, whatever minima chords have
         level = float(self.sigma[row]) * (1.0 + LEVEL)
         tree = work.tree
         here = find_at(tree.parent, tree.stamp, node, level)
@@ -265,6 +267,10 @@ def _judge_inside(
     at = np.flatnonzero(nodes >= 0)
     s = sigma[at]
     joined = work.search.node_level[nodes[at]] <= s * (1.0 + LEVEL)
+    if work.polygon_first is not None:
+        # chords may have minima of their own below sigma_first, and join others a hair too early
+        beyond = work.search.node_level[nodes[at]] >= work.polygon_first * (1.0 - LEVEL)
+        joined = ~beyond | (joined & (s >= first))
     inside = s < escape
     code = np.where(joined, np.where(s < first, TARGET, CAGED), OTHER)
     verdict[at] = np.where(inside, code, ESCAPES)

@@ -6,14 +6,29 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import ComplexArray, FloatArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
-from icage.cells.kernels.columns import EDGE_FROM, NODE_EDGE, PASS_SIGMA, StartSide
+from icage.cells.kernels.columns import (
+    BIRTH_SIGMA,
+    BIRTH_WX,
+    BORN_FINGER,
+    BORN_SLOT,
+    EDGE_FROM,
+    LOW_DEPTH,
+    LOW_LEVEL,
+    MERGE_SIDE,
+    NODE_EDGE,
+    PASS_SIGMA,
+    StartSide,
+)
+from icage.cells.kernels.facet import middles_on_facets
+from icage.cells.kernels.slide import which_slide
+from icage.cells.kernels.tree import births
 from icage.cells.target import Target, plateau_through
-from icage.geometry.statics import free_fingers
+from icage.geometry.statics import free_fingers, free_fingers_of
 from icage.geometry.way_out import corners_before_pinch
-from icage.tolerance import DEPTH_CUT, LEVEL
+from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU, SAME_POINT, SLIDE_GIVE
 
 
 class Joining(NamedTuple):
@@ -32,26 +47,24 @@ def joinings(tree: Tree, depth_cut: float) -> list[Joining]:
     """
     members: dict[int, list[int]] = {}
     met: list[Joining] = []
-    for (keep, lose, edge, side), (level, depth) in zip(
-        tree.merges.tolist(), tree.lows.tolist(), strict=True
+    # a shallow minimum holds no other: had it swallowed one, it would be deeper still
+    deep = tree.lows[:, LOW_DEPTH] > depth_cut
+    for (keep, lose, edge, side), level in zip(
+        tree.merges[deep].tolist(), tree.lows[deep, LOW_LEVEL].tolist(), strict=True
     ):
         kept = members.pop(keep, [keep])
         lost = members.pop(lose, [lose])
-        if depth > depth_cut:
-            if side != StartSide.NEITHER:
-                other = kept if side == StartSide.SWALLOWED else lost
-                met.append(Joining(level, edge, tuple(other)))
-            members[keep] = kept + lost
-        else:
-            # a shallow minimum holds no other: had it swallowed one, it would be deeper still
-            members[keep] = kept
+        if side != StartSide.NEITHER:
+            other = kept if side == StartSide.SWALLOWED else lost
+            met.append(Joining(level, edge, tuple(other)))
+        members[keep] = kept + lost
     return met
 
 
 def first_joining(tree: Tree, depth_cut: float, escape: float) -> float:
     """sigma_first for a given depth cut, [unit]."""
-    met = joinings(tree, depth_cut)
-    return met[0].sigma if met else escape
+    met = (tree.lows[:, LOW_DEPTH] > depth_cut) & (tree.merges[:, MERGE_SIDE] != StartSide.NEITHER)
+    return float(tree.lows[np.argmax(met), LOW_LEVEL]) if met.any() else escape
 
 
 def grasps_and_punctures(
@@ -60,10 +73,9 @@ def grasps_and_punctures(
     """All grasps (the target first), the punctures in ascending order, and each grasp's node."""
     free_space = found.free_space
     met = joinings(tree, DEPTH_CUT * free_space.pieces.diameter)
-    others: list[tuple[GraspMinimum, int]] = []
-    for joining in met:
-        for node in joining.minima:
-            others.append((_grasp(free_space, found, tree, node, joining.sigma), node))
+    joined = [(node, joining.sigma) for joining in met for node in joining.minima]
+    grasps_of = _grasps(free_space, found, joined)
+    others = [(grasp, node) for grasp, (node, _) in zip(grasps_of, joined, strict=True)]
     others.sort(key=lambda pair: (round(pair[0].sigma, 12), pair[0].contacts.ravel().tolist()))
     first = _target_grasp(free_space, target)
     ids = {node: k + 1 for k, (_, node) in enumerate(others)}
@@ -100,24 +112,36 @@ def _target_grasp(free_space: FreeSpace, target: Target) -> GraspMinimum:
     )
 
 
-def _grasp(
-    free_space: FreeSpace, found: Search, tree: Tree, node: int, joined_at: float
-) -> GraspMinimum:
-    sigma, wx, wy = tree.birth[node].tolist()
-    finger, slot = tree.birth_at[node].tolist()
-    a, b = free_space.on_edge(found.cells[node], finger, slot, wx, wy)
-    here = Configuration(0.5 * (a.d + b.d), a.w)
-    plateau = plateau_through(free_space, here, sigma)
-    contacts = free_space.contacts(here)
-    return GraspMinimum(
-        -1,
-        False,
-        sigma,
-        contacts,
-        _plateau_contacts(free_space, plateau),
-        free_fingers(free_space.outline, contacts),
-        joined_at,
-    )
+def _grasps(
+    free_space: FreeSpace, found: Search, joined: list[tuple[int, float]]
+) -> list[GraspMinimum]:
+    """The least points of nodes, each with the level at which its basin joins the target's."""
+    if not joined:
+        return []
+    pieces, z = free_space.pieces, free_space.z
+    nodes = found.nodes[[node for node, _ in joined]]
+    # of each cell by itself, whichever of several equal ones the tree has noted
+    born = births(pieces, z, nodes, free_space.cap, free_space.worst)
+    sigma = born.value[:, BIRTH_SIGMA]
+    hands = middles_on_facets(
+        pieces, z, nodes, born.where[:, BORN_FINGER], born.where[:, BORN_SLOT],
+        born.value[:, BIRTH_WX:],
+    )  # fmt: skip
+    size = pieces.diameter
+    # what ``plateau_through`` asks first
+    slide = which_slide(
+        pieces, z, hands, sigma, free_space.cap, free_space.worst,
+        SAME_POINT * size, PLATEAU * size, SLIDE_GIVE * size, DEPTH_CUT * size,
+    )  # fmt: skip
+    at = [Configuration(complex(*m[:2]), complex(*m[2:])) for m in hands.tolist()]
+    contacts = [free_space.contacts(here) for here in at]
+    touching = free_fingers_of(free_space.outline, np.array(contacts))
+    grasps: list[GraspMinimum] = []
+    for k, (here, low, (_, level)) in enumerate(zip(at, sigma.tolist(), joined, strict=True)):
+        ends = plateau_through(free_space, here, low) if slide[k] else None
+        plateau = _plateau_contacts(free_space, ends)
+        grasps.append(GraspMinimum(-1, False, low, contacts[k], plateau, touching[k], level))
+    return grasps
 
 
 def _plateau_contacts(
@@ -183,11 +207,15 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     Between neighbours d and w move in a straight line, so every finger does; both ends lie in one
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
-    points = [target.at, *(found.edge_configuration(e) for e in path_edges(found))]
+    free_space = found.free_space
+    points = [target.at, *found.edge_configurations(path_edges(found))]
     # the last piece, or the finger that stands still, takes all three
-    still = found.free_space.contacts(points[-1])[max(found.standing, 0)]
+    still = free_space.contacts(points[-1])[max(found.standing, 0)]
     # a last pass that is a pinched hand already is the end itself
-    points = points[: corners_before_pinch([p.w for p in points], found.free_space.pieces.diameter)]
-    rows = [found.free_space.placement(p) for p in points]
-    rows.append(np.array([*still, rows[-1][2], 0.0]))
-    return np.array(rows), found.free_space.hand.least_gap([p.w for p in points])
+    points = points[: corners_before_pinch([p.w for p in points], free_space.pieces.diameter)]
+    d: ComplexArray = np.array([p.d for p in points])
+    w: ComplexArray = np.array([p.w for p in points])
+    x, y = free_space.origin
+    rows = np.column_stack([d.real + x, d.imag + y, np.angle(w), np.abs(w)])
+    rows = np.vstack([rows, [*still, rows[-1, 2], 0.0]])
+    return rows, free_space.hand.least_gap(w.tolist())

@@ -25,6 +25,9 @@ class CageWork:
     """Node of each grasp, by id."""
     sagitta: float = 0.0
     """How far the polygon searched may lie inside the true offset, [unit] (0 for points)."""
+    polygon_first: float | None = None
+    """The polygon's own level of the puncture at sigma_first, [unit], where the cage has the levels
+    of the true curve: what it joins below that is the target's to the true curve."""
     remembered: dict[str, object] = field(default_factory=dict[str, object])
     """Point location and escape levels, built when first asked for (see membership)."""
 

@@ -77,7 +77,7 @@ def surroundings(
     outline: Outline, hand: HandShape, *, merge: bool = True
 ) -> tuple[Surroundings, FloatArray]:
     """Cut the plane and lay everything out; returns the origin too. O(n log n)."""
-    pieces, origin = exterior_pieces(outline, hand, merge=merge)
+    pieces, origin = exterior_pieces(outline, hand, merge=merge, apexes=False)
     ring = np.column_stack([pieces.x[4:], pieces.y[4:]])  # the box has the first four vertices
     side = np.roll(ring, -1, axis=0) - ring
     length = np.hypot(side[:, 0], side[:, 1])

@@ -17,7 +17,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
-from icage.discs.offsets import Offsets, check_disc_contacts, directions_on_arcs, offsets
+from icage.discs.offsets import Offsets, directions_on_arcs, offsets
 from icage.discs.true_curve import refine
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
@@ -55,11 +55,10 @@ class ArcLocalCage:
     sagitta: float
 
 
-def plan_discs(
+def plan_by_resolutions(
     outline: Outline, hand: HandShape, contacts: FloatArray, radius: float, method: Method
 ) -> Cage:
-    """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
-    check_disc_contacts(outline, radius, contacts)
+    """The cage of disc fingers whose centres stand on checked ``contacts`` (3, 2)."""
     true = _true_target(outline, hand, contacts, radius)
     local_cages, closed = _local_cages(outline, hand, true, radius, method)
     lower = [local_cage for local_cage in local_cages if local_cage.inner]
@@ -183,11 +182,12 @@ def _bracketed(
         sigma_0=grasps[0].sigma,
         sigma_first=_finite(first),
         sigma_max=_finite(low),
+        sigma_max_lower=_finite(low),
         sigma_max_upper=_finite(high),
         sigma_first_upper=_finite(first_upper),
         sigma_first_converged=converged,
         adjusted_by=float(np.hypot(*(grasps[0].contacts - contacts).T).max()),
-        punctures=_punctures(cage, first),
+        punctures=_punctures(cage, first, _first_contacts(local_cages, cage, first)),
         grasps=grasps,
         escape_path=path,
         min_finger_gap=gap,
@@ -220,22 +220,34 @@ def _on_true_curve(cage: Cage, true: FloatArray) -> tuple[GraspMinimum, ...]:
     return tuple(grasps)
 
 
-def _punctures(cage: Cage, first: float) -> tuple[Puncture, ...]:
-    """The punctures of the basis polygon, the first of them at sigma_first."""
+def _first_contacts(local_cages: list[ArcLocalCage], cage: Cage, first: float) -> FloatArray | None:
+    """Contacts (3, 2) of the first puncture of the polygon whose sigma_first is taken."""
+    for local_cage in local_cages:
+        if local_cage.sigma_first == first:
+            own = local_cage.local_cage.cage(cage.contacts, cage.outline, cage.finger_radius)
+            return own.punctures[0].contacts if own.punctures else None
+    return None
+
+
+def _punctures(cage: Cage, first: float, contacts: FloatArray | None) -> tuple[Puncture, ...]:
+    """The punctures of the basis polygon, the first of them at sigma_first on these contacts."""
     head = cage.punctures[0] if cage.punctures else None
     if head is None or not np.isfinite(first):
         return cage.punctures
     if abs(head.sigma / first - 1.0) <= SIGMA_FIRST_SPREAD and head.kind == "intermediate":
-        return (replace(head, sigma=first), *cage.punctures[1:])
+        at = head.contacts if contacts is None else contacts
+        return (replace(head, sigma=first, contacts=at), *cage.punctures[1:])
     if head.sigma <= first * (1.0 + 2.0 * LEVEL):
         return cage.punctures
-    return (replace(head, sigma=first, kind="intermediate", joins=()), *cage.punctures)
+    at = head.contacts if contacts is None else contacts
+    new = replace(head, sigma=first, kind="intermediate", joins=(), contacts=at)
+    return (new, *cage.punctures)
 
 
 def _warnings(
     local_cages: list[ArcLocalCage], low: float, high: float, converged: bool, closed: int
 ) -> tuple[str, ...]:
-    told: list[str] = []
+    told = ["the levels are those of polygons, not solved on the true curve"]
     if closed:
         told.append(f"the finger's radius closes {closed} pocket(s) of the outline")
     if not (low == high or high / low - 1.0 < SIGMA_MAX_GAP):

@@ -17,6 +17,7 @@ import numpy as np
 import shapely
 
 from icage.arrays import FloatArray
+from icage.discs.curve import TrueCurve
 from icage.errors import GeometryError, GraspError
 from icage.geometry.exterior import without_straight_vertices
 from icage.geometry.geos import union
@@ -241,8 +242,12 @@ def directions_on_arcs(
     return found
 
 
-def check_disc_contacts(outline: Outline, radius: float, contacts: FloatArray) -> None:
+def check_disc_contacts(
+    outline: Outline, radius: float, contacts: FloatArray, curve: TrueCurve | None = None
+) -> None:
     """Finger centres must lie at the radius from the outline, apart, and outside closed pockets.
+
+    ``curve`` is the true curve, where it is known.
 
     Raises
     ------
@@ -267,8 +272,11 @@ def check_disc_contacts(outline: Outline, radius: float, contacts: FloatArray) -
                 f"fingers {k + 1} and {other + 1} overlap: their centres are {side:.6g} apart, "
                 f"at least 2 x {radius:.6g} is needed"
             )
-    grown = offsets(outline, radius, 16).inner
-    swallowed = np.atleast_1d(shapely.distance(points, grown.polygon.exterior))
+    if curve is not None:
+        swallowed = curve.distance(contacts)
+    else:
+        grown = offsets(outline, radius, 16).inner
+        swallowed = np.atleast_1d(shapely.distance(points, grown.polygon.exterior))
     for k in range(3):
         if swallowed[k] > 0.01 * radius + reach:
             raise GraspError(

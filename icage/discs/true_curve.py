@@ -10,7 +10,6 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize, nnls
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GraspError, HandError
@@ -80,6 +79,8 @@ def refine(
     closed behind it, or stands in the object there, is no minimum. None then, as where there is
     none. A finger may be free in the minimum found.
     """
+    from scipy.optimize import minimize  # only now: scipy is slow to load
+
     size = outline.diameter
     features = features_near(outline, radius, contacts)
     if len({f.finger for f in features}) < 2:
@@ -256,6 +257,8 @@ class _System:
 
     def is_balanced(self, v: FloatArray) -> bool:
         """Whether pushing forces of touched features balance, and no finger is inside of one."""
+        from scipy.optimize import nnls
+
         gaps = self.gaps(v)
         if not -_INSIDE <= float(gaps.min()) <= _INSIDE:
             return False
@@ -267,6 +270,8 @@ class _System:
 
         ``loaded`` keeps to those that carry some when all forces push.
         """
+        from scipy.optimize import nnls
+
         active: IntArray = np.flatnonzero(self.gaps(v) < 1e-7).astype(np.int64)
         if not len(active):
             return None

@@ -15,7 +15,6 @@ from icage.case import MAX_NAME, Case
 from icage.errors import CaseError, FormatError, InputError
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
-from icage.formats.svg.outline import read_svg
 from icage.outline import MAX_VERTICES, Outline
 from icage.units import UNITS, Unit
 
@@ -186,6 +185,8 @@ def _parse_outline(
         a_number(data[key], f"outline.{key}") if key in data else None
         for key in ("width", "tolerance")
     )
+    from icage.formats.svg.outline import read_svg  # only now: a reader of its own
+
     with _told_with("outline"):
         return read_svg(folder / file, width, tolerance, unit), (folder / file,)
 

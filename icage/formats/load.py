@@ -14,7 +14,6 @@ from icage.case import Case
 from icage.checks import a_count, a_number, one_of
 from icage.errors import CaseError, InputError
 from icage.formats.case_json import has_grasp, parse_unit, read_case, read_object
-from icage.formats.svg.outline import read_svg, stated_unit
 from icage.outline import Outline
 from icage.units import UNITS, Unit
 from models import case_paths, grasp_cases, object_names, outline_path
@@ -160,6 +159,8 @@ def read_drawing(
     Without a unit the answer is in the one in which the drawing states its size (mm in, mm out),
     and so is ``width``; in m where the drawing states none. ``size_from`` says which it was.
     """
+    from icage.formats.svg.outline import read_svg, stated_unit  # only now: a reader of its own
+
     own = stated_unit(path)
     measure = parse_unit(unit or own or "m")
     outline = read_svg(path, width, tolerance, measure)

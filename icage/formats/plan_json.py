@@ -79,6 +79,7 @@ def _brackets(cage: Cage) -> dict[str, Any]:
     return {
         "sigma_first_upper": cage.sigma_first_upper,
         "sigma_first_converged": cage.sigma_first_converged,
+        "sigma_max_lower": cage.sigma_max_lower,
         "sigma_max_upper": cage.sigma_max_upper,
     }
 

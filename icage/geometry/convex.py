@@ -15,12 +15,10 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
+from icage.geometry.kernels.merging import FILTER, merge_rings
 
 MAX_EDGES: Final = 10
 """Cap on edges per piece: larger ones are fewer, but cost more each. [docs/theory.md, Sec. 3.1]"""
-
-_FILTER: Final = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
-"""[1] Relative error bound of the float orientation determinant. [Shewchuk1997, ccwerrboundA]"""
 
 Point = tuple[float, float]
 
@@ -38,7 +36,7 @@ def orientation(a: Point, b: Point, c: Point) -> int:
     left = (a[0] - c[0]) * (b[1] - c[1])
     right = (a[1] - c[1]) * (b[0] - c[0])
     det = left - right
-    if abs(det) > _FILTER * (abs(left) + abs(right)):
+    if abs(det) > FILTER * (abs(left) + abs(right)):
         return 1 if det > 0.0 else -1
     ax, ay, bx, by, cx, cy = (Fraction(v) for v in (*a, *b, *c))
     exact = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
@@ -74,15 +72,18 @@ def triangulate(polygon: shapely.Polygon) -> tuple[FloatArray, IntArray]:
 
 
 def _counterclockwise(vertices: FloatArray, triangles: IntArray) -> IntArray:
-    points: list[Point] = [(x, y) for x, y in vertices.tolist()]
-    corners: list[list[int]] = triangles.tolist()
-    turned: list[tuple[int, int, int]] = []
-    for a, b, c in corners:
-        sign = orientation(points[a], points[b], points[c])
-        if sign == 0:
-            raise GeometryError(f"the triangle on vertices {a}, {b}, {c} has no area")
-        turned.append((a, b, c) if sign > 0 else (a, c, b))
-    return np.array(turned, dtype=np.int64).reshape(-1, 3)
+    a, b, c = np.moveaxis(vertices[triangles], 1, 0)
+    left = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
+    right = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
+    det = left - right
+    sign = np.sign(det)
+    for t in np.flatnonzero(np.abs(det) <= FILTER * (np.abs(left) + np.abs(right))):
+        p, q, r = vertices[triangles[t]].tolist()
+        sign[t] = orientation((p[0], p[1]), (q[0], q[1]), (r[0], r[1]))
+        if sign[t] == 0.0:
+            i, j, k = triangles[t]
+            raise GeometryError(f"the triangle on vertices {i}, {j}, {k} has no area")
+    return np.where((sign > 0.0)[:, None], triangles, triangles[:, [0, 2, 1]])
 
 
 def merge_convex(
@@ -107,21 +108,39 @@ def merge_convex(
     -------
     Rings of vertex indices, counterclockwise, each from its smallest index; in ascending order.
     """
-    points: list[Point] = [(x, y) for x, y in np.asarray(vertices, dtype=np.float64).tolist()]
-    mesh = _HalfEdges(np.asarray(triangles, dtype=np.int64))
-    for edge in _longest_first(points, mesh):
+    corners = np.ascontiguousarray(triangles, dtype=np.int64)
+    places = np.asarray(vertices, dtype=np.float64)
+    origin = corners.ravel()
+    twin = twins(origin, corners[:, [1, 2, 0]].ravel(), len(places))
+    order = _longest_first(places, origin, twin)
+    x, y = np.ascontiguousarray(places[:, 0]), np.ascontiguousarray(places[:, 1])
+    merged, ends, certain = merge_rings(x, y, origin, twin, order, max_edges)
+    if certain:
+        numbers, last = merged.tolist(), ends.tolist()
+        return sorted(numbers[a:b] for a, b in zip([0, *last[:-1]], last, strict=True))
+    points: list[Point] = [(x, y) for x, y in places.tolist()]
+    mesh = _HalfEdges(origin, twin)
+    for edge in order.tolist():
         mesh.remove_if_convex(edge, points, max_edges)
     return mesh.rings()
 
 
-def _longest_first(points: list[Point], mesh: _HalfEdges) -> list[int]:
+def twins(start: IntArray, end: IntArray, vertices: int) -> IntArray:
+    """The half edge that runs the other way, -1 where there is none."""
+    key, back = start * vertices + end, end * vertices + start
+    order = np.argsort(key)
+    ordered = key[order]
+    if bool((ordered[1:] == ordered[:-1]).any()):
+        raise GeometryError("two triangles use one edge in the same direction")
+    place = np.searchsorted(ordered, back).clip(max=len(key) - 1)
+    return np.where(ordered[place] == back, order[place], -1).astype(np.int64)
+
+
+def _longest_first(vertices: FloatArray, origin: IntArray, twin: IntArray) -> IntArray:
     """Every diagonal once, by its half edge of smaller number."""
-    lengths: list[tuple[float, int]] = []
-    for edge, twin in enumerate(mesh.twin):
-        if edge < twin:
-            (ax, ay), (bx, by) = points[mesh.origin[edge]], points[mesh.origin[twin]]
-            lengths.append((-((ax - bx) ** 2) - (ay - by) ** 2, edge))
-    return [edge for _, edge in sorted(lengths)]
+    edges = np.flatnonzero(np.arange(len(twin)) < twin)
+    side = vertices[origin[edges]] - vertices[origin[twin[edges]]]
+    return edges[np.argsort(-(side[:, 0] ** 2) - side[:, 1] ** 2, kind="stable")]
 
 
 def _stays_convex(before: Point, corner: Point, after: Point) -> bool:
@@ -134,23 +153,18 @@ def _stays_convex(before: Point, corner: Point, after: Point) -> bool:
 
 
 class _HalfEdges:
-    """Half edges of a triangulation: edge 3 t + k starts at corner k of triangle t."""
+    """Half edges of a triangulation, merged in exact arithmetic: ``merge_rings`` once more."""
 
-    def __init__(self, triangles: IntArray) -> None:
-        count = 3 * len(triangles)
-        self.origin: list[int] = triangles.ravel().tolist()
+    def __init__(self, origin: IntArray, twin: IntArray) -> None:
+        count = len(origin)
+        self.origin: list[int] = origin.tolist()
         self.next: list[int] = [e + 1 if e % 3 < 2 else e - 2 for e in range(count)]
         self.prev: list[int] = [e - 1 if e % 3 > 0 else e + 2 for e in range(count)]
-        by_ends = {(self.origin[e], self.origin[self.next[e]]): e for e in range(count)}
-        if len(by_ends) != count:
-            raise GeometryError("two triangles use one edge in the same direction")
-        self.twin: list[int] = [
-            by_ends.get((self.origin[self.next[e]], self.origin[e]), -1) for e in range(count)
-        ]
+        self.twin: list[int] = twin.tolist()
         self._alive = [True] * count
         self._piece = [e // 3 for e in range(count)]
-        self._parent = list(range(len(triangles)))
-        self._edges = [3] * len(triangles)
+        self._parent = list(range(count // 3))
+        self._edges = [3] * (count // 3)
 
     def _find(self, piece: int) -> int:
         while self._parent[piece] != piece:

@@ -14,7 +14,8 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
-from icage.geometry.convex import merge_convex, triangulate
+from icage.geometry.convex import merge_convex, triangulate, twins
+from icage.geometry.round_chains import with_apexes
 from icage.hand import HandShape
 from icage.kernels.straight import corners
 from icage.outline import Outline
@@ -86,11 +87,12 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
 
 
 def exterior_pieces(
-    outline: Outline, hand: HandShape, *, merge: bool = True
+    outline: Outline, hand: HandShape, *, merge: bool = True, apexes: bool = True
 ) -> tuple[Pieces, FloatArray]:
     """Convex pieces of the box minus the object, and the origin their coordinates are relative to.
 
-    ``merge=False`` keeps the raw triangles: slower, and a second formulation of the same space.
+    ``merge=False`` keeps the raw triangles, ``apexes=False`` the outline's own vertices even where
+    it is round: slower, and other formulations of the same space.
     """
     origin = outline.vertices[0].copy()
     ring = without_straight_vertices(outline.vertices - origin, outline.diameter)
@@ -100,8 +102,17 @@ def exterior_pieces(
     margin = 1.01 * outline.diameter * longest / shortest_side(hand)
     low, high = ring.min(axis=0) - margin, ring.max(axis=0) + margin
     box = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
-    vertices, triangles = triangulate(shapely.Polygon(box, [ring]))
+    corner = len(box)
+    vertices = np.concatenate([box, ring])
+    used, fans = np.arange(len(vertices)), list[list[int]]()
+    if apexes:
+        coarse, above, fans = with_apexes(ring)
+        vertices = np.concatenate([vertices, above])
+        used = np.concatenate([used[:corner], corner + coarse])
+    _, triangles = triangulate(shapely.Polygon(box, [vertices[used[corner:]]]))
+    triangles = used[triangles]
     rings = merge_convex(vertices, triangles) if merge else triangles.tolist()
+    rings += [[corner + v for v in triangle] for triangle in fans]
     return _as_pieces(vertices, rings, outline.diameter), origin
 
 
@@ -113,18 +124,9 @@ def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) ->
     owner = np.repeat(np.arange(len(rings)), sizes)
     side = vertices[slot_end] - vertices[slot_vertex]
     length = np.hypot(side[:, 0], side[:, 1])
-    by_ends = {
-        (int(a), int(b)): s for s, (a, b) in enumerate(zip(slot_vertex, slot_end, strict=True))
-    }
-    neighbour = np.array(
-        [
-            owner[by_ends[(int(b), int(a))]]
-            if (int(b), int(a)) in by_ends
-            else (BOX if a < 4 and b < 4 else WALL)
-            for a, b in zip(slot_vertex, slot_end, strict=True)
-        ],
-        dtype=np.int64,
-    )
+    twin = twins(slot_vertex, slot_end, len(vertices))
+    outside = np.where((slot_vertex < 4) & (slot_end < 4), BOX, WALL)
+    neighbour = np.where(twin >= 0, owner[twin], outside)
     walls = np.flatnonzero(neighbour == WALL)
     return Pieces(
         x=np.ascontiguousarray(vertices[:, 0]),

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
-from scipy.optimize import minimize
 
 from icage.arrays import FloatArray, IntArray
 from icage.geometry.contact_types import feet
@@ -62,6 +61,8 @@ def least_opening(
     NoOpeningError:
         The search did not converge.
     """
+    from scipy.optimize import minimize  # only now: scipy is slow to load
+
     size, middle = outline.diameter, near.mean(axis=0)
     a = outline.vertices
     out, _ = _normals(outline)

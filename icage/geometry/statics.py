@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from scipy.optimize import linprog
 
 from icage.arrays import FloatArray
 from icage.outline import Outline
@@ -33,6 +32,8 @@ def balance(outline: Outline, contacts: FloatArray, reach: float) -> float | Non
     -sum lambda_i (n_i . p_i), positive for squeezing and negative where the hand would have to
     open. The largest over all balanced forces is returned.
     """
+    from scipy.optimize import linprog  # only now: most grasps hold, and scipy is slow to load
+
     columns: list[FloatArray] = []
     work: list[float] = []
     centre = contacts.mean(axis=0)
@@ -87,5 +88,11 @@ def no_depth_reason(opening: float) -> str:
 
 def free_fingers(outline: Outline, contacts: FloatArray) -> tuple[int, ...]:
     """Fingers (of 1, 2, 3) that touch nothing."""
-    gap = np.atleast_1d(shapely.distance(shapely.points(contacts), outline.polygon.exterior))
-    return tuple(k + 1 for k in range(len(gap)) if gap[k] > FREE_FINGER * outline.diameter)
+    return free_fingers_of(outline, contacts[None])[0]
+
+
+def free_fingers_of(outline: Outline, contacts: FloatArray) -> list[tuple[int, ...]]:
+    """The same for several grasps (k, 3, 2) at once."""
+    gap = np.asarray(shapely.distance(shapely.points(contacts), outline.polygon.exterior))
+    free = gap > FREE_FINGER * outline.diameter
+    return [tuple((np.flatnonzero(row) + 1).tolist()) for row in free]

@@ -36,7 +36,8 @@ class Crew:
     Parameters
     ----------
     seconds:
-        After which ``OutOfTimeError`` is raised, between two chunks; None for never.
+        After which ``OutOfTimeError`` is raised, between two chunks, once there is a grasp; None
+        for never.
     """
 
     def __init__(self, workers: int, progress: Progress, seconds: float | None = None) -> None:
@@ -59,8 +60,7 @@ class Crew:
         for done, answer in enumerate(self._threads.map(work, given), 1):
             yield answer
             self._progress(stage, done * weight, len(given) * weight, self.best)
-            if self._end is not None and time.monotonic() > self._end:
-                raise OutOfTimeError
+            self._look_at_the_clock()
 
     def grasps(
         self, evaluator: GraspEvaluator, triples: IntArray, points: FloatArray, stage: str,
@@ -111,5 +111,10 @@ class Crew:
             self.compared += done - chunk.start
             self._note(answer[1])
             self._progress(stage, done, total, self.best)
-            if self._end is not None and time.monotonic() > self._end:
-                raise OutOfTimeError
+            self._look_at_the_clock()
+
+    def _look_at_the_clock(self) -> None:
+        """Nobody is served by an end before the first grasp."""
+        late = self._end is not None and time.monotonic() > self._end
+        if late and self.best is not None:
+            raise OutOfTimeError

@@ -23,6 +23,7 @@ from icage.grasps.kernels.climb import climb, tried_jobs
 from icage.grasps.kernels.evaluate import Sought, Verdict, evaluate
 from icage.grasps.kernels.hands import HandLimits as Limits
 from icage.grasps.kernels.shaping import shaped_points
+from icage.grasps.stretches import stretch
 from icage.grasps.wanted import LEAST_GAP, Candidate, Wanted
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -41,6 +42,9 @@ _OF_TOLERANCE = 10.0
 
 _LEAST = 1e-3
 """[diameter] ... and this far in any case."""
+
+_TOUCHING = 1e-9
+"""[diameter] A finger this much further off than its radius still touches."""
 
 _FURTHER = 12
 """Points of concurrency at which a triple is tried where it is looked at more closely."""
@@ -71,8 +75,11 @@ class GraspEvaluator:
         widest = HandShape(complex(0.5, (WIDEST**2 - 0.25) ** 0.5))
         self._pieces, self._origin = exterior_pieces(self.outline, widest)
         self._ring = np.ascontiguousarray(self.outline.vertices - self._origin)
-        boxes = np.array(wanted.avoid, dtype=np.float64).reshape(-1, 4)
-        self._sought = Sought(wanted.aim == "first", boxes, radius, _SEARCH_LIMIT)
+        avoided = np.concatenate(
+            [np.empty((0, 4)), *(stretch(outline, *ends) for ends in wanted.avoid)]
+        )
+        reach = radius + _TOUCHING * outline.diameter
+        self._sought = Sought(wanted.aim == "first", avoided, reach, _SEARCH_LIMIT)
 
     def evaluate(
         self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)

@@ -125,7 +125,6 @@ def ranked_grasps(
     """
     frame = NearFrame.of(outline)
     outline = frame.outline_into(outline)
-    wanted = replace(wanted, avoid=_boxes_into(frame, wanted))
     search = _Search(outline, finger_radius, wanted, rng)
     ended: Ended | None = None
     with Crew(workers, progress, seconds) as crew:
@@ -146,15 +145,6 @@ def ranked_grasps(
         tuple(replace(c, contacts=frame.back(c.contacts)) for c in best.candidates()),
         search.triples, search.left_out, search.broken_off, crew.compared, ended,
     )  # fmt: skip
-
-
-def _boxes_into(frame: NearFrame, wanted: Wanted) -> tuple[tuple[float, float, float, float], ...]:
-    """The boxes in the frame near the object, which is only shifted."""
-    found: list[tuple[float, float, float, float]] = []
-    for box in wanted.avoid:
-        low, high = frame.into(np.array([box[:2], box[2:]])).tolist()
-        found.append((low[0], low[1], high[0], high[1]))
-    return tuple(found)
 
 
 class _Search:

@@ -14,8 +14,8 @@ from icage.errors import InputError
 Aim: TypeAlias = Literal["first", "cage"]
 """What is ranked: sigma_first / sigma_0, or sigma_max / sigma_0."""
 
-Box: TypeAlias = tuple[float, float, float, float]
-"""x_low, y_low, x_high, y_high, [unit]."""
+Stretch: TypeAlias = tuple[float, float]
+"""From one arclength of the outline to another, counterclockwise from its first vertex, [unit]."""
 
 LEAST_ANGLE: Final = math.radians(15.0)
 """[rad] Flatter hands are hard to build: their middle finger stands between the others."""
@@ -98,7 +98,7 @@ class Wanted:
     limits:
         Of the hand.
     avoid:
-        Boxes, [unit], into which no finger may reach on the target.
+        Stretches of the outline that no finger may touch on the target.
     tolerance:
         [unit] How wrong the outline may be: fingers must be ten times further apart, and the cage
         must be that deep.
@@ -108,7 +108,7 @@ class Wanted:
     corners: int = 0
     near: tuple[float, float, float] | None = None
     limits: HandLimits = field(default_factory=HandLimits)
-    avoid: tuple[Box, ...] = ()
+    avoid: tuple[Stretch, ...] = ()
     tolerance: float = 0.0
 
     def __post_init__(self) -> None:
@@ -117,37 +117,32 @@ class Wanted:
         a_number(self.tolerance, "tolerance")
         if self.tolerance < 0.0:
             raise InputError(f"tolerance = {self.tolerance:g}; 0 or more is needed")
-        for box in self.avoid:
-            for value in box:
-                a_number(value, "avoid")
-            if box[0] > box[2] or box[1] > box[3]:
-                raise InputError(f"avoid = {box}; x_low <= x_high and y_low <= y_high are needed")
 
 
-def as_boxes(avoid: Sequence[Sequence[float]]) -> tuple[Box, ...]:
-    """Boxes of four numbers each.
+def as_stretches(avoid: Sequence[Sequence[float]]) -> tuple[Stretch, ...]:
+    """Pairs of arclengths.
 
     Raises
     ------
     InputError:
         One of them is something else.
 
-    >>> as_boxes([[0, 0, 2, 1]])
-    ((0.0, 0.0, 2.0, 1.0),)
+    >>> as_stretches([[0, 2]])
+    ((0.0, 2.0),)
     """
-    found: list[Box] = []
-    for box in avoid:
+    found: list[Stretch] = []
+    for pair in avoid:
         try:
-            numbers = [a_number(value, "avoid") for value in box]
+            numbers = [a_number(value, "avoid") for value in pair]
         except TypeError as error:
-            raise InputError(f"avoid holds {box!r}; boxes of four numbers are needed") from error
-        if len(numbers) != _SIDES:
-            raise InputError(f"avoid holds a box of {len(numbers)} numbers; four are needed")
-        found.append((numbers[0], numbers[1], numbers[2], numbers[3]))
+            raise InputError(f"avoid holds {pair!r}; pairs of arclengths are needed") from error
+        if len(numbers) != _ENDS:
+            raise InputError(f"avoid holds {len(numbers)} numbers; pairs of arclengths are needed")
+        found.append((numbers[0], numbers[1]))
     return tuple(found)
 
 
-_SIDES: Final = 4
+_ENDS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)

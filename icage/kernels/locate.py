@@ -127,30 +127,34 @@ def cells_of(pieces, fingers, buckets, tolerance):
 
 
 @compiled
+def _depth(ring, x, y):
+    """How far a point is inside the polygon; negative outside."""
+    n = len(ring)
+    nearest = np.inf
+    odd = False
+    for a in range(n):
+        b = a + 1 if a + 1 < n else 0
+        ax = ring[a, 0]
+        ay = ring[a, 1]
+        sx = ring[b, 0] - ax
+        sy = ring[b, 1] - ay
+        t = ((x - ax) * sx + (y - ay) * sy) / (sx * sx + sy * sy)
+        t = min(1.0, max(0.0, t))
+        gx = x - ax - t * sx
+        gy = y - ay - t * sy
+        nearest = min(nearest, gx * gx + gy * gy)
+        if (ay > y) != (ring[b, 1] > y) and x < ax + (y - ay) / sy * sx:
+            odd = not odd
+    gap = math.sqrt(nearest)
+    return gap if odd else -gap
+
+
+@compiled
 def depth_inside(ring, points, radius):
     """How far each point (n, 2) is inside the polygon grown by ``radius``; negative outside."""
-    n = len(ring)
     depth = np.empty(len(points))
     for row in range(len(points)):
-        x = points[row, 0]
-        y = points[row, 1]
-        nearest = np.inf
-        odd = False
-        for a in range(n):
-            b = a + 1 if a + 1 < n else 0
-            ax = ring[a, 0]
-            ay = ring[a, 1]
-            sx = ring[b, 0] - ax
-            sy = ring[b, 1] - ay
-            t = ((x - ax) * sx + (y - ay) * sy) / (sx * sx + sy * sy)
-            t = min(1.0, max(0.0, t))
-            gx = x - ax - t * sx
-            gy = y - ay - t * sy
-            nearest = min(nearest, gx * gx + gy * gy)
-            if (ay > y) != (ring[b, 1] > y) and x < ax + (y - ay) / sy * sx:
-                odd = not odd
-        gap = math.sqrt(nearest)
-        depth[row] = radius + gap if odd else radius - gap
+        depth[row] = radius + _depth(ring, points[row, 0], points[row, 1])
     return depth
 
 

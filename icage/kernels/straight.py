@@ -3,8 +3,6 @@
 # pyright: basic
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from icage.kernels.compiled import compiled
@@ -17,13 +15,13 @@ def _straight(x, y, first, start, count, bound):
     last = (start + count - 1) % n
     sx = x[last] - x[first]
     sy = y[last] - y[first]
-    length = math.hypot(sx, sy)
+    length = np.hypot(sx, sy)
     before = 0.0
     for k in range(count - 1):
         px = x[(start + k) % n] - x[first]
         py = y[(start + k) % n] - y[first]
         if length <= bound:
-            if math.hypot(px, py) > bound:
+            if np.hypot(px, py) > bound:
                 return False
             continue
         along = (px * sx + py * sy) / length

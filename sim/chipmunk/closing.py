@@ -26,7 +26,7 @@ def close_many_second(
     """
     rows = np.asarray(starts, dtype=np.float64).reshape(-1, 4)
     begin = scene.start_positions(rows)
-    check = StepCheck.over(scene, begin)
+    check = StepCheck.over(scene, begin, remains=np.zeros(len(begin)))
     states = np.zeros((len(rows), 12))
     states[:, :6] = approached(scene, begin)
     forces, contacts = np.zeros((len(rows), 3)), np.zeros(len(rows), dtype=np.int64)

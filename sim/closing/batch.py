@@ -15,6 +15,7 @@ from icage.arrays import FloatArray
 from sim.closing.approach import approached
 from sim.closing.one import outcomes
 from sim.closing.outcome import ClosingOutcomes
+from sim.closing.push import push
 from sim.closing.step_check import StepCheck
 from sim.world.engine import Batch, mj, no_log
 from sim.world.scene import Scene
@@ -52,12 +53,16 @@ def _close_batch(
     check = StepCheck.over(scene, qpos)
     if not len(starts):
         return outcomes(scene, starts, check, np.zeros((0, 7)))
+    pushed = push(scene, approached(scene, qpos), check)
     batch = Batch(scene.model, nsim=len(starts), nthread=threads)
-    batch.qpos = approached(scene, qpos)
+    batch.qpos, batch.qvel = pushed.positions, pushed.velocities
+    batch.qacc_warmstart = pushed.accelerations
     batch.ctrl = scene.closing_force
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")
     running = check.running
-    for _ in range(scene.config.max_steps):
+    if progress is not None and len(running) < len(starts):
+        progress(len(starts) - len(running))
+    while len(running):
         try:
             batch.step(running.astype(np.int32))
         except mj.batch.SimulationError as error:
@@ -69,6 +74,4 @@ def _close_batch(
         before, running = len(running), check.running
         if progress is not None and len(running) < before:
             progress(before - len(running))
-        if not len(running):
-            break
     return outcomes(scene, starts, check, batch.state)

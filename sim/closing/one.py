@@ -11,6 +11,7 @@ from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcome, ClosingOutcomes
+from sim.closing.push import push
 from sim.closing.step_check import DIVERGED, StepCheck
 from sim.world.contact_forces import finger_forces
 from sim.world.engine import MjData, mj, no_log
@@ -22,16 +23,16 @@ def close(scene: Scene, start: Placement) -> ClosingOutcome:
     placements = start.as_array()[None, :]
     qpos = scene.start_positions(placements)
     check = StepCheck.over(scene, qpos)
-    data = data_at(scene, approached(scene, qpos)[0])
+    pushed = push(scene, approached(scene, qpos), check)
+    data = data_at(scene, pushed.positions[0])
+    data.qvel[:], data.qacc_warmstart[:] = pushed.velocities[0], pushed.accelerations[0]
     only = np.zeros(1, dtype=np.int64)
     with no_log():
-        for _ in range(scene.config.max_steps):
+        while len(check.running):
             mj.mj_step(scene.model, data)
             check.observe(only, data.qpos[None, :], data.qvel[None, :])
             if data.warning.number.any():
                 check.diverged(only)
-            if not len(check.running):
-                break
     return outcomes(scene, placements, check, integration_state(scene, data)[None, :])[0]
 
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Final
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.hand import Placement
 from sim.closing.step_check import ENDINGS, StepCheck
+
+RULES: Final = "2"
+"""Counts the changes to closings that change a recorded number: part of every record's versions.
+
+2: tails are foreseen (``SimConfig.remains``) and the object's way there is computed
+(``SimConfig.computed_contacts``).
+"""
 
 
 @dataclass(frozen=True, slots=True)

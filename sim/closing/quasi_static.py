@@ -118,14 +118,17 @@ def compare(
     threads: int = 0,
 ) -> tuple[Variant, ...]:
     """Close from the starts (N, 4) with the usual settings and with each change."""
-    usual = close_many(scene, starts, threads)
+    waits = replace(scene.config, remains=0.0)  # ends are compared far below what remains
+    usual = close_many(_with(scene, waits), starts, threads)
     found: list[Variant] = []
     for change in changes:
-        config = change.config(scene.config)
-        other_scene = Scene(scene.outline, scene.hand, scene.finger_radius, config)
-        other = close_many(other_scene, starts, threads)
+        other = close_many(_with(scene, change.config(waits)), starts, threads)
         found.append(_against(scene, grasps, usual, other, change))
     return tuple(found)
+
+
+def _with(scene: Scene, config: SimConfig) -> Scene:
+    return Scene(scene.outline, scene.hand, scene.finger_radius, config)
 
 
 def _against(

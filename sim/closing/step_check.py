@@ -41,8 +41,27 @@ TOUCHING = 1e-6
 """[diameter] A finger this close to the outline touches it: ten times the resolution of the
 engine's meshes, a thousandth of what a step moves."""
 
+PART, PARTS = 0.5, 3
+"""[1] A tail is exponential if this many parts in a row, in each of which the logarithm of the
+speed falls by ``PART``, ..."""
+
+AGREE = 0.01
+"""[1] ... fall at rates that differ by less than this. A second motion hidden under the first (a
+slower tail, a body that leaves an unstable balance) then has less than a thirtieth of the speed;
+what swings, turns back or creeps falls faster and faster, or not at all."""
+
+_SLOW = 1e-3
+"""[diameter / s, rad / s] Faster than this nothing is called rest."""
+
+_SLOWEST, _FASTEST = 5e-5, 0.05
+"""[1 / step] Rates of tails that are foreseen. A faster one is a contact's own: it is waited for,
+since it is over soon and the depth at rest is measured."""
+
 (_DEPTH_MAX, _DEPTH, _SHAPE_MAX, _RISE_MAX, _SIGMA_START, _TOUCHES) = range(6)
 _FIELDS = 6
+
+(_SPEED, _PART_SPEED, _PART_STEP, _RATE, _GOOD) = range(5)
+_TAIL_FIELDS = 5
 
 
 class _Shape(NamedTuple):
@@ -56,22 +75,56 @@ class _Shape(NamedTuple):
 
 
 class _Bounds(NamedTuple):
-    """When a closing has ended; ``stride`` [step] is the time between two looks."""
+    """When a closing has ended; ``stride`` [step] is the time between two looks, ``step``
+    [s] one step.
+    """
 
     pinched_sigma: float
     still_speed: float
     still_steps: int
     stride: int
+    step: float
 
 
 class _Record(NamedTuple):
-    """What is updated, a row each for N closings; ``max_steps`` (N,) is read only."""
+    """What is updated, a row each for N closings; ``max_steps``, ``remains`` (N,) are read only.
+
+    ``tail`` (N, 5) is the last speed; speed and step at which the present part of the tail began;
+    the rate of the part before and how many in a row had it.
+    """
 
     max_steps: IntArray
+    remains: FloatArray
+    tail: FloatArray
     seen: FloatArray
     still: IntArray
     steps: IntArray
     ending: IntArray
+
+
+@njit(cache=True)
+def _fades(
+    i: int, speed: float, bounds: _Bounds, record: _Record
+) -> bool:  # pragma: no cover - compiled
+    """Whether the speed falls exponentially and what is left of the way is short enough."""
+    tail, now = record.tail[i], record.steps[i]
+    before = tail[_SPEED]
+    tail[_SPEED] = speed
+    if not 0.0 < speed < before or record.seen[i, _TOUCHES] < 3:
+        tail[_PART_SPEED], tail[_PART_STEP], tail[_RATE], tail[_GOOD] = speed, now, 0.0, 0
+        return False
+    loss, steps = math.log(tail[_PART_SPEED] / speed), now - tail[_PART_STEP]
+    if loss >= PART:
+        rate, last = loss / steps, tail[_RATE]
+        tail[_GOOD] = tail[_GOOD] + 1 if abs(rate - last) <= AGREE * last else 1
+        tail[_PART_SPEED], tail[_PART_STEP], tail[_RATE] = speed, now, rate
+        loss, steps = 0.0, 0.0
+    rate = tail[_RATE]
+    if tail[_GOOD] < PARTS or abs(loss - rate * steps) > AGREE * PART:
+        return False
+    if speed >= _SLOW or not _SLOWEST < rate < _FASTEST:
+        return False
+    return speed * bounds.step / rate <= record.remains[i]
 
 
 @njit(cache=True)
@@ -110,12 +163,13 @@ def _observe(
         seen[i, _SHAPE_MAX] = max(seen[i, _SHAPE_MAX], off)
         seen[i, _RISE_MAX] = max(seen[i, _RISE_MAX], sigma / seen[i, _SIGMA_START])
         seen[i, _TOUCHES] = touches
+        fades = record.remains[i] > 0.0 and _fades(i, speed, bounds, record)
         still[i] = still[i] + bounds.stride if speed < bounds.still_speed and touches >= 2 else 0
         if not (math.isfinite(speed) and math.isfinite(sigma) and math.isfinite(deepest)):
             ending[i] = DIVERGED
         elif sigma < bounds.pinched_sigma:
             ending[i] = PINCHED
-        elif still[i] >= bounds.still_steps:
+        elif still[i] >= bounds.still_steps or fades:
             ending[i] = SETTLED
         elif steps[i] >= record.max_steps[i]:
             ending[i] = TIMED_OUT
@@ -138,27 +192,39 @@ class StepCheck:
     ending: IntArray
     stride: int
     _max_steps: IntArray
+    _remains: FloatArray
+    _tail: FloatArray
     _still: IntArray
     _seen: FloatArray
 
     @classmethod
     def over(
-        cls, scene: Scene, qpos: FloatArray, stride: int = 1, patience: FloatArray | None = None
+        cls,
+        scene: Scene,
+        qpos: FloatArray,
+        stride: int = 1,
+        patience: FloatArray | None = None,
+        remains: FloatArray | None = None,
     ) -> StepCheck:
         """Start watching closings that start from qpos (N, 6), every ``stride`` steps.
 
-        ``patience`` (N,) multiplies the scene's time until a closing has timed out.
+        ``patience`` (N,) multiplies the scene's time until a closing
+        has timed out. ``remains`` (N,) stands for the scene's own; 0 where anything but the motor
+        and the dampers acts, or in another engine.
         """
         count = len(qpos)
         longer = np.ones(count) if patience is None else patience
         seen = np.zeros((count, _FIELDS))
         seen[:, _SIGMA_START] = scene.sigma(qpos)
+        rest = scene.config.remains if scene.config.friction == 0.0 else 0.0
         return cls(
             scene,
             steps=np.zeros(count, dtype=np.int64),
             ending=np.full(count, RUNNING, dtype=np.int64),
             stride=stride,
             _max_steps=np.ceil(scene.config.max_steps * longer).astype(np.int64),
+            _remains=np.full(count, rest) if remains is None else remains,
+            _tail=np.zeros((count, _TAIL_FIELDS)),
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )
@@ -179,8 +245,12 @@ class StepCheck:
             config.still_speed,
             config.still_steps,
             self.stride,
+            config.time_step,
         )
-        record = _Record(self._max_steps, self._seen, self._still, self.steps, self.ending)
+        record = _Record(
+            self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,
+            self.ending,
+        )  # fmt: skip
         observe(ids, qpos, qvel, shape, bounds, record)
 
     def diverged(self, ids: IntArray) -> None:

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import BoolArray, FloatArray
 from icage.errors import InputError
 from sim.world.engine import MjModel, mj
 from sim.world.scene import Scene
@@ -69,6 +69,13 @@ class Worlds:
         """N worlds as in a replay: no friction, a level table."""
         ones = ("softness", "mass", "inertia", "speed", "force")
         return cls(**{f.name: np.full(count, float(f.name in ones)) for f in fields(cls)})
+
+    @property
+    def are_usual(self) -> BoolArray:
+        """(N,) which of them are as in a replay."""
+        usual = Worlds.usual(1)
+        same = [getattr(self, f.name) == getattr(usual, f.name)[0] for f in fields(self)]
+        return np.logical_and.reduce(same)
 
     def __getitem__(self, rows: Any) -> Worlds:
         return Worlds(**{f.name: getattr(self, f.name)[rows] for f in fields(self)})

@@ -17,6 +17,7 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcomes
+from sim.closing.push import push
 from sim.closing.step_check import RUNNING, SETTLED, StepCheck
 from sim.closing.varied import Setting, Worlds, expand, own_model, settings
 from sim.world.engine import Batch, MjModel, mj, no_log
@@ -145,7 +146,7 @@ def _layout(model: MjModel) -> tuple[int, ...]:
 
 
 def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> VariedOutcomes:
-    batch, parts = _opened(lot, starts, worlds, threads)
+    batch, parts, peak = _opened(lot, starts, worlds, threads)
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")
     force, warning = batch.bind("sensordata"), batch.warning
     batch.bind("ncon")  # read at the end: a field bound after the last step would be 0
@@ -153,8 +154,8 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
     held_up = (worlds.friction > 0.0) | (worlds.table_friction > 0.0)
     rough = np.concatenate([held_up[rows] for _, rows in lot])
     pace = np.concatenate([worlds.speed[rows] for _, rows in lot])
-    rest, peak = _Rest(total, DRIFT * np.minimum(pace, 1.0)), np.zeros(total)
-    running = np.arange(total)
+    rest = _Rest(total, DRIFT * np.minimum(pace, 1.0))
+    running = np.flatnonzero(np.concatenate([part.check.ending for part in parts]) == RUNNING)
     while len(running):
         lost: Any = ()
         try:
@@ -191,19 +192,23 @@ def _look(
     return check.running + first
 
 
-def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tuple[Any, list[_Part]]:
-    """The batch at its starts, the hands closing."""
+def _opened(
+    lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int
+) -> tuple[Any, list[_Part], FloatArray]:
+    """The batch where the engine takes over, the hands closing, and the largest forces so far."""
     total = sum(len(rows) for _, rows in lot)
     batch = Batch(lot[0][0].model, nsim=total, nthread=threads)
     models: list[MjModel] = []
     parts: list[_Part] = []
-    begin, pull = np.zeros((total, 6)), np.zeros((total, 1))
+    begin, speed, push_on = np.zeros((3, total, 6))
+    pull, peak = np.zeros((total, 1)), np.zeros(total)
+    usual = worlds.are_usual
     first = 0
     for scene, rows in lot:
         here = slice(first, first + len(rows))
         qpos = scene.start_positions(starts[rows])
         level = (worlds.gravity_x[rows] == 0.0) & (worlds.gravity_y[rows] == 0.0)
-        begin[here] = np.where(level[:, None], approached(scene, qpos), qpos)
+        free = np.where(level[:, None], approached(scene, qpos), qpos)
         pull[here, 0] = scene.closing_force * worlds.force[rows]
         changes: list[Setting] = list(settings(scene, worlds[rows]))
         if len(lot) == 1 and len(rows) >= TOGETHER:
@@ -211,13 +216,19 @@ def _opened(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> tupl
         else:
             models += [own_model(scene.model, changes, i) for i in range(len(rows))]
         patience = 1.0 / np.minimum(worlds.speed[rows], 1.0)
-        parts.append(_Part(scene, rows, StepCheck.over(scene, qpos, LOOK_EVERY, patience)))
+        held_up = (worlds.friction[rows] > 0.0) | (worlds.table_friction[rows] > 0.0)
+        remains = np.where(held_up, 0.0, scene.config.remains)
+        check = StepCheck.over(scene, qpos, LOOK_EVERY, patience, remains)
+        pushed = push(scene, free, check, usual[rows])
+        begin[here], speed[here] = pushed.positions, pushed.velocities
+        push_on[here], peak[here] = pushed.accelerations, pushed.peak_force
+        parts.append(_Part(scene, rows, check))
         first += len(rows)
     if models:
         batch.set_models(models)
-    batch.qpos = begin
+    batch.qpos, batch.qvel, batch.qacc_warmstart = begin, speed, push_on
     batch.ctrl = pull
-    return batch, parts
+    return batch, parts, peak
 
 
 def _read_off(

@@ -93,7 +93,7 @@ def friction_row(
     held = supports(scene.outline, contacts, scene.finger_radius)
     if not held.three_edges:
         raise InputError(f"the bound is for three edges; this target rests on {held.types}")
-    here = replace(scene.config, friction=mu)
+    here = replace(scene.config, friction=mu, remains=0.0)  # at a time, not when little is left
     longer = replace(here, max_time=2.0 * here.max_time)
     first, second = (
         close_many(Scene(scene.outline, scene.hand, scene.finger_radius, config), starts, threads)

@@ -85,6 +85,17 @@ class SimConfig:
     still_steps: int = 10
     """[step] ... for this many steps in a row, while two fingers press."""
 
+    remains: float = 5e-6
+    """[diameter, rad] Without friction a closing is also at rest when its speed falls exponentially
+    and what is left of the way, speed times time constant, is below this
+    (``sim.closing.step_check``): a twentieth of what counts as the target. 0: wait for
+    ``still_speed``."""
+
+    computed_contacts: int = 3
+    """[1] While the object is pushed about and has no more contacts than these, the engine's steps
+    are computed by ``sim.closing.push``: the same map to 1e-9, at a quarter of the cost. 0: all
+    steps by the engine."""
+
     max_time: float = 20.0
     """[s] A closing still moving then has timed out: a failure to look at. The slowest grasp known
     (three straight edges, ``models/hard/spiral_tunnel``) takes 11 s."""
@@ -93,11 +104,15 @@ class SimConfig:
     """[diameter] A hand whose longest side is shorter than this has shut on nothing: escaped."""
 
     def __post_init__(self) -> None:
-        for name in ("time_step", "drive_force", "finger_damping", "object_damping", "max_time"):
+        positive = ("drive_force", "finger_damping", "object_damping", "max_time")
+        for name in ("time_step", *positive):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
-        for name in ("friction", "linkage_compliance"):
+        contacts = self.computed_contacts
+        if contacts not in (0, 1, 2, 3):
+            raise InputError(f"SimConfig.computed_contacts is {contacts!r}; 0 to 3 is needed")
+        for name in ("friction", "linkage_compliance", "remains"):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value >= 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; >= 0 is needed")

@@ -27,7 +27,8 @@ from tests.oracles.geometry import Floats
 from tests.oracles.polygons import rotated
 
 POINTS = (3, 6, 9, 12, 15, 18)
-DISCS = [(n, r) for n in (3, 6, 9, 12) for r in (0.02, 0.1, 0.35)]
+DISCS = [(n, r) for n in (3, 6, 9, 12) for r in (0.02, 0.1, 0.35, 0.9)]
+MORE_DISCS = [(15, r) for r in (0.02, 0.1, 0.35, 0.9)]
 EXACT = 1e-9
 
 
@@ -90,22 +91,38 @@ def test_all_grasps_below_the_escape_are_turned_copies(n: int) -> None:
     assert len(three) == (n if first < last * (1.0 - EXACT) else 1)
 
 
-@pytest.mark.parametrize(("n", "radius"), DISCS)
+@pytest.mark.parametrize(
+    ("n", "radius"), [*DISCS, *(pytest.param(*d, marks=pytest.mark.slow) for d in MORE_DISCS)]
+)
 def test_discs_on_a_regular_polygon(n: int, radius: float) -> None:
-    """sigma_0 and sigma_max exactly: edges carry all contacts. sigma_first is that of chords."""
+    """Edges carry the target, arcs the way to its neighbours, an arc and an edge the escape."""
     cage = plan(Outline(ngon(n)), middles(n, radius), radius)
-    sigma_0, first, last = levels(n, radius)
-    assert found(cage)[0] == pytest.approx(sigma_0, rel=EXACT)
-    assert cage.sigma_max is not None
+    right = levels(n, radius)
+    assert found(cage) == pytest.approx(right, rel=EXACT)
+    assert cage.sigma_max_lower is not None
     assert cage.sigma_max_upper is not None
-    assert cage.sigma_max <= last * (1.0 + EXACT)
-    assert cage.sigma_max_upper >= last * (1.0 - EXACT)
-    assert cage.sigma_max_upper / cage.sigma_max - 1.0 < 1e-4
-    assert cage.sigma_first is not None
-    assert cage.sigma_first_upper is not None
+    assert cage.sigma_max_lower <= right[2] * (1.0 + EXACT)
+    assert cage.sigma_max_upper >= right[2] * (1.0 - EXACT)
+    assert cage.sigma_max_upper / cage.sigma_max_lower - 1.0 < 1e-4
     assert cage.sigma_first_converged
-    assert cage.sigma_first <= first * (1.0 + EXACT)
-    assert cage.sigma_first_upper >= first * (1.0 - EXACT)
+    assert not cage.warnings
+    three = [g for g in cage.grasps if not g.free_fingers]
+    assert [g.sigma for g in three] == pytest.approx([right[0]] * len(three), rel=EXACT)
+    assert len(three) == (n if right[1] < right[2] * (1.0 - EXACT) else 1)
+
+
+@pytest.mark.parametrize(("n", "radius"), [(3, 0.1), (6, 0.35)])
+def test_discs_by_the_papers_method(n: int, radius: float) -> None:
+    method: Method = ContactSpace()
+    cage = plan(Outline(ngon(n)), middles(n, radius), radius, method)
+    assert found(cage) == pytest.approx(levels(n, radius), rel=EXACT)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_discs_turned_moved_and_scaled(unit: float) -> None:
+    ring, contacts = (unit * rotated(p, 0.7, (30.0, -20.0)) for p in (ngon(9), middles(9, 0.1)))
+    cage = plan(Outline(ring), contacts, 0.1 * unit)
+    assert np.array(found(cage)) / unit == pytest.approx(levels(9, 0.1), rel=EXACT)
 
 
 @pytest.mark.parametrize("n", [3, 6, 9, 12])

@@ -91,7 +91,7 @@ def marginals(cage: Cage, rows: FloatArray) -> list[FloatArray]:
     [("T", "guaranteed"), pytest.param("Z_twofold_multi", "rest", marks=pytest.mark.slow)],
 )
 def test_starts_are_uniform_like_plain_rejection(name: str, which: StartSet):
-    cage, count = cage_of(name), 6_000
+    cage, count = cage_of(name), 20_000
     plain = marginals(cage, plain_rejection(cage, which, count, seed=11))
     drawn = draw_starts(cage, which, count, np.random.default_rng(12)).placements
     for ours, theirs in zip(marginals(cage, drawn), plain, strict=True):

@@ -34,9 +34,10 @@ from icage.geometry.exterior import exterior_pieces, without_straight_vertices
 from icage.geometry.statics import balance, contact_normals, free_fingers
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
+from icage.grasps.kernels.hands import HandLimits
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.search import best_grasps
-from icage.grasps.wanted import Candidate, Wanted
+from icage.grasps.wanted import ANY_HAND, Candidate, Wanted
 from icage.hand import HandShape
 from icage.method import Method
 from icage.outline import Outline
@@ -83,11 +84,10 @@ class Specimen:
 
 def held(outline: Outline, ring: Ring, radius: float) -> Candidate | None:
     """The best of a few grasps that hold beyond doubt and not only by a hair."""
-    bench = GraspEvaluator(outline, radius, Wanted())
-    jobs = bench.jobs(np.random.default_rng(0))
-    tried = [
-        bench.at(*jobs[k]) for k in np.linspace(0, len(jobs) - 1, min(TRIED, len(jobs)), dtype=int)
-    ]
+    bench = GraspEvaluator(outline, radius, Wanted(limits=ANY_HAND))
+    triples, points = bench.triples()
+    few = np.linspace(0, len(triples) - 1, min(TRIED, len(triples)), dtype=int)
+    tried = [bench.at(triples[k], points[k]) for k in few]
     good = [
         c
         for c in tried
@@ -272,8 +272,10 @@ def _grasp_search(one: Specimen) -> None:
         return
     assert one.candidate.sigma_0 == pytest.approx(one.cage.sigma_0, rel=EXACT)
     if len(one.ring) <= MOST_VERTICES:
-        best = best_grasps(one.outline, top=1, rng=np.random.default_rng(0))[0]
-        assert best.sigma_0 <= best.sigma_first <= best.sigma_max
+        best = best_grasps(
+            one.outline, top=1, wanted=Wanted(limits=ANY_HAND), rng=np.random.default_rng(0)
+        )[0]
+        assert best.sigma_0 < best.level
         assert best.score >= one.candidate.score
         assert plan(one.outline, best.contacts).status != "not_a_cage"
 
@@ -305,7 +307,7 @@ def _features(one: Specimen) -> None:
     ahead = one.ring.tangents
     turn = back[:, 0] * ahead[:, 1] - back[:, 1] * ahead[:, 0]
     assert (features.kind == VERTEX).sum() == 2 * (turn < -1e-6).sum()
-    triples, points = balanced_triples(features, one.outline, 1e-3 * one.size)
+    triples, points = balanced_triples(features, one.outline, HandLimits.apart(1e-3 * one.size))
     assert len(triples) == len(points)
     assert one.candidate is None or len(triples) > 0
 

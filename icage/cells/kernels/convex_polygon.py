@@ -114,6 +114,15 @@ def area(x, y, n):
 
 
 @compiled
+def mean(values, n):
+    """Mean of the first n, added one after the other: numpy would add them in another order."""
+    total = 0.0
+    for a in range(n):
+        total += values[a]
+    return total / n
+
+
+@compiled
 def centroid(x, y, n):
     """Area centroid of a polygon, or the mean of its corners if it has no area."""
     total = 0.0
@@ -125,7 +134,7 @@ def centroid(x, y, n):
         cx += part * (x[a] + x[a + 1] - 2.0 * x[0])
         cy += part * (y[a] + y[a + 1] - 2.0 * y[0])
     if total <= 0.0:
-        return Point(x[:n].mean(), y[:n].mean())
+        return Point(mean(x, n), mean(y, n))
     return Point(x[0] + cx / (3.0 * total), y[0] + cy / (3.0 * total))
 
 

@@ -8,7 +8,6 @@ keeps the set; where no w exists at all, Farkas' multipliers do. Our own.
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -62,7 +61,7 @@ def other_rows(pieces, z, i, finger, piece, rows, n):
     """Append the rows of one finger's half planes, over |z_finger - z_i|; returns how many."""
     ux = z[finger, 0] - z[i, 0]
     uy = z[finger, 1] - z[i, 1]
-    size = math.hypot(ux, uy)
+    size = np.hypot(ux, uy)
     for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
         nx = pieces.normal_x[s] / size
         ny = pieces.normal_y[s] / size
@@ -103,7 +102,7 @@ def _line(rows, level, x, y, proof):
         hx -= m_b * rows[b, ROW_NX]
         hy -= m_b * rows[b, ROW_NY]
         c += m_b * rows[b, ROW_OFFSET]
-    e = c + hx * x + hy * y - level * math.hypot(sx, sy)
+    e = c + hx * x + hy * y - level * np.hypot(sx, sy)
     return Line(e, hx, hy, x, y, m_r + m_a + m_b)
 
 
@@ -163,7 +162,7 @@ def cut(rows, n, x, y, level):
             second = at_hi
         wx = bx - s * gy
         wy = by + s * gx
-    norm = math.hypot(wx, wy)
+    norm = np.hypot(wx, wy)
     if norm <= level or first < 0:
         return Cut(False, Line(norm - level, 0.0, 0.0, x, y, 0.0))
     m_1 = 1.0
@@ -182,7 +181,7 @@ def boundary_point(rows, n, x0, y0, x1, y1, level, tiny):
     """Boundary point on the way from an inside point to (x1, y1), and the last cut."""
     dx = x1 - x0
     dy = y1 - y0
-    length = math.hypot(dx, dy)
+    length = np.hypot(dx, dy)
     t = 1.0
     last = Line(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     inside = True

@@ -55,9 +55,10 @@ def _grown(keys, levels):
 def shrinkable(pieces, z, placements):
     """Which hands (n, 4) = d_x, d_y, w_x, w_y can shrink to a point at once."""
     free = np.zeros(len(placements), np.bool_)
+    barred = np.zeros(3, np.int64)
     for k in range(len(placements)):
         dx, dy, wx, wy = placements[k]
-        free[k] = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale) >= 0
+        free[k] = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale, barred) >= 0
     return free
 
 

@@ -118,7 +118,7 @@ def min_norm(rows, n, worst):
 @compiled
 def _certified(rows, n, worst, wx, wy, first, second):
     """Is |w| within ``worst`` of the truth? Weak duality below, a fat wedge of room above."""
-    norm = math.hypot(wx, wy)
+    norm = np.hypot(wx, wy)
     if norm == 0.0:
         return FOUND
     ux = wx / norm

@@ -69,7 +69,7 @@ def _shift(z, ax, ay, awx, awy, b):
         vx, vy = b.w_x - awx, b.w_y - awy
         x = b.d_x - ax + vx * z[f, 0] - vy * z[f, 1]
         y = b.d_y - ay + vx * z[f, 1] + vy * z[f, 0]
-        most = max(most, math.hypot(x, y))
+        most = max(most, np.hypot(x, y))
     return most
 
 
@@ -85,7 +85,7 @@ def _turn(awx, awy, b):
 def _nearest_on(ax, ay, bx, by, wx, wy):
     """The point of the segment from a to b that is nearest to w."""
     sx, sy = bx - ax, by - ay
-    length = math.hypot(sx, sy)
+    length = np.hypot(sx, sy)
     if length == 0.0:
         return ax, ay
     t = ((wx - ax) * sx + (wy - ay) * sy) / (length * length)
@@ -101,14 +101,14 @@ def _slid_to(pieces, z, cell, hx, hy, wx, wy, to):
         return hx, hy
     far = 0
     for k in range(len(corners)):
-        if math.hypot(corners[k, 0] - hx, corners[k, 1] - hy) > math.hypot(
+        if np.hypot(corners[k, 0] - hx, corners[k, 1] - hy) > np.hypot(
             corners[far, 0] - hx, corners[far, 1] - hy
         ):
             far = k
     back = 0
     for k in range(len(corners)):
-        if math.hypot(corners[k, 0] - corners[far, 0], corners[k, 1] - corners[far, 1]) > (
-            math.hypot(corners[back, 0] - corners[far, 0], corners[back, 1] - corners[far, 1])
+        if np.hypot(corners[k, 0] - corners[far, 0], corners[k, 1] - corners[far, 1]) > (
+            np.hypot(corners[back, 0] - corners[far, 0], corners[back, 1] - corners[far, 1])
         ):
             back = k
     return _nearest_on(
@@ -160,9 +160,9 @@ def nearest_minimum(pieces, z, wanted, reach, turn, cap, worst):
             ends.x_lo - fx, ends.y_lo - fy, ends.x_hi - fx, ends.y_hi - fy, wanted.d_x, wanted.d_y
         )
         if (
-            math.hypot(wx - wanted.w_x, wy - wanted.w_y)
+            np.hypot(wx - wanted.w_x, wy - wanted.w_y)
             <= reach * size
-            < math.hypot(dx - wanted.d_x, dy - wanted.d_y)
+            < np.hypot(dx - wanted.d_x, dy - wanted.d_y)
         ):
             # the same hand elsewhere: perhaps on a plateau that runs through where it should be
             dx, dy = _slid_to(pieces, z, cells[k], dx, dy, wx, wy, wanted)

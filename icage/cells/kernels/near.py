@@ -3,7 +3,6 @@
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +35,7 @@ def _gap_to(pieces, k, x, y):
         sy = pieces.y[b] - pieces.y[a]
         t = ((x - pieces.x[a]) * sx + (y - pieces.y[a]) * sy) / (sx * sx + sy * sy)
         t = min(1.0, max(0.0, t))
-        nearest = min(nearest, math.hypot(pieces.x[a] + t * sx - x, pieces.y[a] + t * sy - y))
+        nearest = min(nearest, np.hypot(pieces.x[a] + t * sx - x, pieces.y[a] + t * sy - y))
     return nearest
 
 

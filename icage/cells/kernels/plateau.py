@@ -3,7 +3,6 @@
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -77,7 +76,7 @@ def translations(pieces, z, cell, wx, wy):
 @compiled
 def _is_further(hx, hy, ox, oy, bx, by, dx, dy, reach):
     """Whether d lies further from ``h`` than the best b, on the side away from the other end o."""
-    if math.hypot(dx - hx, dy - hy) <= math.hypot(bx - hx, by - hy) + reach:
+    if np.hypot(dx - hx, dy - hy) <= np.hypot(bx - hx, by - hy) + reach:
         return False
     return (dx - hx) * (ox - hx) + (dy - hy) * (oy - hy) <= 0.0
 
@@ -113,5 +112,5 @@ def plateau_through(pieces, z, here, sigma, cap, worst, most):
             if not moved:
                 break
             ends[side, 0], ends[side, 1] = bx, by
-    length = math.hypot(ends[0, 0] - ends[1, 0], ends[0, 1] - ends[1, 1])
+    length = np.hypot(ends[0, 0] - ends[1, 0], ends[0, 1] - ends[1, 1])
     return Plateau(length > PLATEAU * size, ends[0, 0], ends[0, 1], ends[1, 0], ends[1, 1])

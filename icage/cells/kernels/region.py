@@ -6,7 +6,6 @@ Our own.
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +41,7 @@ def _covered(outer, m, inner_store, inner_start, inner_count, held, n_held, slac
                 ay = inner_store[start + c, 1]
                 bx = inner_store[start + d, 0]
                 by = inner_store[start + d, 1]
-                side = math.hypot(bx - ax, by - ay)
+                side = np.hypot(bx - ax, by - ay)
                 cross = (bx - ax) * (outer[1, a] - ay) - (by - ay) * (outer[0, a] - ax)
                 if cross < -slack * side:
                     holds = False

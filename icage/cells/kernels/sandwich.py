@@ -7,7 +7,6 @@ cuts (what is left is outside). Our own.
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from icage.cells.kernels.convex_polygon import (
     centroid,
     clip,
     hull,
+    mean,
     new_corners,
 )
 from icage.cells.kernels.cut import boundary_point, cut, other_rows
@@ -119,7 +119,7 @@ def sandwich(pieces, z, i, cell, level, start, enough, inner, outer):
             if not end.inside:
                 near = end.line
                 depth = near.e + near.g_x * (tx[a] - near.c_x) + near.g_y * (ty[a] - near.c_y)
-                deeper = depth * math.hypot(line.g_x, line.g_y) > line.e * math.hypot(
+                deeper = depth * np.hypot(line.g_x, line.g_y) > line.e * np.hypot(
                     near.g_x, near.g_y
                 )
                 if thin and m < CORNERS - 4:
@@ -152,8 +152,8 @@ def sandwich(pieces, z, i, cell, level, start, enough, inner, outer):
                 nb += 1
                 break
             if not thin:
-                cx = hx[:nh].mean()
-                cy = hy[:nh].mean()
+                cx = mean(hx, nh)
+                cy = mean(hy, nh)
                 break
             m = clip(polygon, m, line, _SPARE * tiny * line.weight, room)
             if m < 3 or area(px, py, m) < _NO_AREA * enough:

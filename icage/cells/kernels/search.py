@@ -29,7 +29,8 @@ from icage.cells.kernels.columns import (
     RECORD_NODE,
     Ending,
 )
-from icage.cells.kernels.facet import facet_of, finger_on_segment, new_room, pass_value
+from icage.cells.kernels.facet import facet_of, finger_on_segment
+from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.shrink import pivot
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import (
@@ -129,6 +130,24 @@ def birth(pieces, z, cell, cap, worst, room):
 
 
 @compiled
+def _least_on_walls(pieces, z, cell, least, worst, room):
+    """Least sigma with finger 1 or 2 on an edge that leads nowhere, or ``least`` if that is less.
+
+    What else could be the least sigma of the cell (see ``birth``) are passes, which the search
+    computes when it opens them.
+    """
+    if cell[0] == cell[1] and cell[1] == cell[2]:
+        return 0.0
+    for i in range(2):
+        piece = cell[i]
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            if pieces.slot_neighbour[s] < 0:
+                facet = facet_of(pieces, cell, i, s)
+                least = min(least, pass_value(pieces, z, facet, least, worst, room).sigma)
+    return least
+
+
+@compiled
 def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough):
     """Search from the cell ``start`` (3,), born at ``floor``, until the hand escapes.
 
@@ -138,6 +157,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
     """
     m = len(pieces.ptr) - 1
     room = new_room()
+    barred = np.zeros(3, np.int64)
     nodes = np.empty((256, 4), np.int64)
     node_level = np.empty((256, 1))
     edges = np.empty((1024, 5), np.int64)
@@ -186,7 +206,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
             ends = finger_on_segment(pieces, z, facet, wx, wy, room.base)
             dx = 0.5 * (ends.x_lo + ends.x_hi) - wx * z[finger, 0] + wy * z[finger, 1]
             dy = 0.5 * (ends.y_lo + ends.y_hi) - wx * z[finger, 1] - wy * z[finger, 0]
-            standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale)
+            standing = pivot(pieces, z, dx, dy, wx, wy, SIGHT * pieces.scale, barred)
             if standing >= 0:
                 outcome = ESCAPED
                 break
@@ -215,6 +235,8 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
                 )
                 if value == np.inf:
                     continue
+                if n_records > 0 and value < records[n_records - 1, RECORD_BIRTH]:
+                    records[n_records - 1, RECORD_BIRTH] = value
                 if n_edges == edges.shape[0]:
                     edges = grown_ints(edges)
                     edge_value = grown_floats(edge_value)
@@ -229,6 +251,11 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
                 heap_push(heap_value[:, 0], heap_item[:, 0], n_heap, value, n_edges)
                 n_heap += 1
                 n_edges += 1
+        if n_records > 0:
+            last = n_records - 1
+            if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] > enough:
+                outcome = MET
+                break
         # the lowest pass to a cell not seen yet
         found = False
         while n_heap > 0 and not found:
@@ -254,11 +281,10 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
             # entered for the first time at the running maximum, so what lies lower behind this
             # pass was not reachable below it; ties (several facets through one vertex) included
             level = max(level, value)
-            behind = birth(pieces, z, cell, level, worst, room).sigma
             if n_records == records.shape[0]:
                 records = grown_floats(records)
             records[n_records, RECORD_LEVEL] = level
-            records[n_records, RECORD_BIRTH] = min(behind, level)
+            records[n_records, RECORD_BIRTH] = _least_on_walls(pieces, z, cell, level, worst, room)
             records[n_records, RECORD_NODE] = n_nodes
             n_records += 1
         elif n_records > 0:
@@ -266,13 +292,9 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
             # was entered by, which may be a sliver
             last = n_records - 1
             if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] < DEEP * pieces.scale:
-                behind = birth(pieces, z, cell, level, worst, room).sigma
-                records[last, RECORD_BIRTH] = min(behind, records[last, RECORD_BIRTH])
-        if n_records > 0:
-            last = n_records - 1
-            if records[last, RECORD_LEVEL] - records[last, RECORD_BIRTH] > enough:
-                outcome = MET
-                break
+                records[last, RECORD_BIRTH] = _least_on_walls(
+                    pieces, z, cell, records[last, RECORD_BIRTH], worst, room
+                )
     # passes left open may still lead between two visited cells
     for e in range(n_edges):
         if edges[e, EDGE_TO] == -1:

@@ -23,9 +23,11 @@ from icage.cells.kernels.columns import (
     MERGE_KEEP,
     MERGE_LOSE,
     MERGE_SIDE,
+    PASS_SIGMA,
     StartSide,
 )
-from icage.cells.kernels.facet import facet_of, new_room, pass_value
+from icage.cells.kernels.facet import facet_of
+from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
 
@@ -84,6 +86,66 @@ def births(pieces, z, nodes, cap, worst):
         )
         where[k, BORN_FINGER], where[k, BORN_SLOT] = born.finger, born.slot
     return Births(value, where)
+
+
+@compiled
+def visited_births(pieces, z, nodes, edges, edge_value, cap, worst):
+    """Least sigma (n, 3) of cells that a search has visited, and where (n, 2), as of ``births``.
+
+    All their passes are known to the search, so that only walls and edges of the box are left.
+    """
+    room = new_room()
+    n = len(nodes)
+    value = np.empty((n, 3))
+    where = np.full((n, 2), -1, np.int64)
+    value[:, BIRTH_SIGMA] = np.inf
+    value[:, BIRTH_WX] = 0.0
+    value[:, BIRTH_WY] = 0.0
+    for e in range(len(edges)):
+        a = edges[e, EDGE_FROM]
+        b = edges[e, EDGE_TO]
+        finger = edges[e, EDGE_FINGER]
+        slot = edges[e, EDGE_SLOT]
+        if a < n and edge_value[e, PASS_SIGMA] < value[a, BIRTH_SIGMA]:
+            value[a] = edge_value[e]
+            where[a, BORN_FINGER], where[a, BORN_SLOT] = finger, slot
+        if 0 <= b < n and edge_value[e, PASS_SIGMA] < value[b, BIRTH_SIGMA]:
+            value[b] = edge_value[e]
+            where[b, BORN_FINGER] = finger
+            where[b, BORN_SLOT] = _other_side(pieces, slot)
+    for k in range(n):
+        cell = nodes[k]
+        if cell[0] == cell[1] and cell[1] == cell[2]:
+            value[k] = 0.0
+            where[k] = -1
+            continue
+        best = min(cap, value[k, BIRTH_SIGMA])
+        for i in range(2):
+            piece = cell[i]
+            for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+                if pieces.slot_neighbour[s] >= 0:
+                    continue
+                sigma, wx, wy = pass_value(
+                    pieces, z, facet_of(pieces, cell, i, s), best, worst, room
+                )
+                if sigma < value[k, BIRTH_SIGMA]:
+                    best = sigma
+                    value[k, BIRTH_SIGMA] = sigma
+                    value[k, BIRTH_WX], value[k, BIRTH_WY] = wx, wy
+                    where[k, BORN_FINGER], where[k, BORN_SLOT] = i, s
+    return Births(value, where)
+
+
+@compiled
+def _other_side(pieces, slot):
+    """The slot of the neighbouring piece that is the same edge, the other way round."""
+    neighbour = pieces.slot_neighbour[slot]
+    first, last = pieces.ptr[neighbour], pieces.ptr[neighbour + 1]
+    for s in range(first, last):
+        before = s - 1 if s > first else last - 1
+        if pieces.slot_vertex[s] == pieces.slot_vertex[slot]:
+            return before
+    return -1
 
 
 @compiled

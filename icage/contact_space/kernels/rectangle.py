@@ -9,7 +9,6 @@ no inverse of T is taken, so a singular T needs no care.
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -64,7 +63,7 @@ def scale_at(space, i, j, k, s, u):
     """The formation scale function. [Bunis2018, Def. 4]"""
     ax, ay = finger_at(space, j, s)
     bx, by = finger_at(space, k, u)
-    return space.rho[i] * math.hypot(ax - bx, ay - by)
+    return space.rho[i] * np.hypot(ax - bx, ay - by)
 
 
 @compiled
@@ -165,8 +164,8 @@ def least_of_region(space, i, j, k, corners, count):
         s1, u1, s2, u2 = corners[a, 0], corners[a, 1], corners[b, 0], corners[b, 1]
         value, s, u = least_on_edge(space, i, j, k, s1, u1, s2, u2)
         for _ in range(2):
-            if value <= low + space.flat and math.hypot(s - ls, u - lu) > far:
-                far, fs, fu = math.hypot(s - ls, u - lu), s, u
+            if value <= low + space.flat and np.hypot(s - ls, u - lu) > far:
+                far, fs, fu = np.hypot(s - ls, u - lu), s, u
             # the other end of a level edge
             value, s, u = scale_at(space, i, j, k, s2, u2), s2, u2
     return Least(low, ls, lu, fs, fu)

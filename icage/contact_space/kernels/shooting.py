@@ -7,8 +7,6 @@ both other fingers run straight at f; what stops them first is a wall, or each o
 # pyright: basic
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from icage.contact_space.kernels.columns import Shot
@@ -110,7 +108,7 @@ def shoot(space, i, j, k, s, u, keep, landing, where):
     t_mover, q_mover, s_mover = first_hit(space, mx, my, fx, fy, edge, mate)
     t_third, q_third, s_third = first_hit(space, x3, y3, fx, fy, -1, -1)
     t = min(t_mover, t_third)
-    reach = math.hypot(fx - mx, fy - my)
+    reach = np.hypot(fx - mx, fy - my)
     if (1.0 - t) * reach <= space.pinch:
         return PINCHED
     t = max(t, 0.0)

@@ -7,8 +7,6 @@ set of a feature, the next one along the outline takes its finger over.
 # pyright: basic
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from icage.grasps.kernels.evaluate import CAGE, Evaluated, evaluate, is_in_set
@@ -101,8 +99,8 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
             order = np.argsort(-value, kind="mergesort")
             at, value = at[order], value[order]
             size = max(
-                math.hypot(at[1, 0] - at[0, 0], at[1, 1] - at[0, 1]),
-                math.hypot(at[2, 0] - at[0, 0], at[2, 1] - at[0, 1]),
+                np.hypot(at[1, 0] - at[0, 0], at[1, 1] - at[0, 1]),
+                np.hypot(at[2, 0] - at[0, 0], at[2, 1] - at[0, 1]),
             )
             if size < _CLOSE * pieces.diameter:
                 break

@@ -7,7 +7,6 @@ as soon as its level is known: at sigma_first where that is ranked, else at sigm
 # pyright: basic
 from __future__ import annotations
 
-import math
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -23,11 +22,11 @@ from icage.cells.kernels.columns import (
     RECORD_LEVEL,
     Ending,
 )
-from icage.cells.kernels.largest import largest_sigma
+from icage.cells.kernels.largest import largest_in
 from icage.cells.kernels.minimum import MOST_CELLS, nearest_minimum
 from icage.cells.kernels.near import Hand
 from icage.cells.kernels.search import explore
-from icage.grasps.kernels.hands import first_finger, in_a_box
+from icage.grasps.kernels.hands import first_finger, touches
 from icage.kernels.compiled import compiled
 from icage.kernels.locate import depth_inside
 from icage.tolerance import (
@@ -42,11 +41,15 @@ from icage.tolerance import (
 GAVE_UP, _, _, MET = Ending
 
 
+_INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it, where the largest sigma is sought."""
+
+
 class Verdict(IntEnum):
     """What a candidate is."""
 
     OUTSIDE = 0
-    """Its contacts are off their features, in a box to avoid, or no hand within the limits."""
+    """Its contacts are off their features, where no finger may be, or no hand within the limits."""
     NO_MINIMUM = 1
     """Nothing holds there, or a finger touches nothing."""
     NO_CAGE = 2
@@ -66,17 +69,17 @@ class Sought(NamedTuple):
     ----------
     first:
         Whether sigma_first is ranked, not sigma_max.
-    boxes:
-        (n, 4) [unit] not to be touched.
-    radius:
-        [unit] of the fingers.
+    avoided:
+        (n, 4) [unit] segments of the outline that are not to be touched.
+    reach:
+        [unit] How near a finger is that touches.
     cell_limit:
         Cells of one search.
     """
 
     first: bool
-    boxes: np.ndarray
-    radius: float
+    avoided: np.ndarray
+    reach: float
     cell_limit: int
 
 
@@ -127,7 +130,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     if first < 0:
         return OUTSIDE, 0, 0.0, 0.0
     for k in range(3):
-        if in_a_box(x[k], y[k], sought.boxes, sought.radius):
+        if touches(x[k], y[k], sought.avoided, sought.reach):
             return OUTSIDE, 0, 0.0, 0.0
     wx, wy = x[1] - x[0], y[1] - y[0]
     ux, uy = x[2] - x[0], y[2] - y[0]
@@ -135,7 +138,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     z = np.zeros((3, 2))
     z[1, 0] = 1.0
     z[2, 0], z[2, 1] = (ux * wx + uy * wy) / norm, (uy * wx - ux * wy) / norm
-    shortest = min(1.0, math.hypot(z[2, 0], z[2, 1]), math.hypot(z[2, 0] - 1.0, z[2, 1]))
+    shortest = min(1.0, np.hypot(z[2, 0], z[2, 1]), np.hypot(z[2, 0] - 1.0, z[2, 1]))
     cap = pieces.diameter / shortest
     worst = 1e-12 * pieces.diameter
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
@@ -154,7 +157,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     for k in range(3):
         x[k], y[k] = own[k, 0] + origin[0], own[k, 1] + origin[1]
     sigma_0 = near[NEAR_SIGMA]
-    longer = math.hypot(x[(first + 1) % 3] - x[first], y[(first + 1) % 3] - y[first])
+    longer = np.hypot(x[(first + 1) % 3] - x[first], y[(first + 1) % 3] - y[first])
     most = limits.sigma_most * sigma_0 / longer
     enough = DEPTH_CUT * pieces.diameter if sought.first else np.inf
     found = explore(
@@ -164,7 +167,8 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
         return BROKEN_OFF, first, sigma_0, 0.0
     level = _level(found, sigma_0, sought.first, pieces.diameter)
     if level == np.inf:
-        level = largest_sigma(pieces, z, found.nodes, most)
+        cells = np.ascontiguousarray(found.nodes[:, :3])
+        level = largest_in(pieces, z, cells, _INSIDE * pieces.diameter, most)
     level = min(level, most)
     if level / sigma_0 - 1.0 < NOT_A_CAGE:
         return NO_CAGE, first, sigma_0, level

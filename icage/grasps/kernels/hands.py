@@ -58,7 +58,7 @@ def first_finger(x, y, limits):
     angle = np.empty(3)
     for k in range(3):
         h = (k + 1) % 3
-        side[k] = math.hypot(x[h] - x[k], y[h] - y[k])
+        side[k] = np.hypot(x[h] - x[k], y[h] - y[k])
     longest = max(side[0], side[1], side[2])
     shortest = min(side[0], side[1], side[2])
     if shortest < limits.least_distance or longest > limits.widest * shortest:
@@ -91,14 +91,13 @@ def first_finger(x, y, limits):
 
 
 @compiled
-def in_a_box(x, y, boxes, radius):
-    """Whether a finger of a radius on (x, y) reaches into one of the boxes (n, 4).
-
-    A box is x_low, y_low, x_high, y_high.
-    """
-    for k in range(len(boxes)):
-        gap_x = max(boxes[k, 0] - x, x - boxes[k, 2], 0.0)
-        gap_y = max(boxes[k, 1] - y, y - boxes[k, 3], 0.0)
-        if math.hypot(gap_x, gap_y) <= radius:
+def touches(x, y, segments, reach):
+    """Whether a finger on (x, y) is within ``reach`` of one of the segments (n, 4) x, y, x, y."""
+    for k in range(len(segments)):
+        ax, ay = segments[k, 0], segments[k, 1]
+        sx, sy = segments[k, 2] - ax, segments[k, 3] - ay
+        length = max(sx * sx + sy * sy, 1e-300)
+        t = min(1.0, max(0.0, ((x - ax) * sx + (y - ay) * sy) / length))
+        if np.hypot(ax + t * sx - x, ay + t * sy - y) <= reach:
             return True
     return False

@@ -75,7 +75,7 @@ def shaped_points(features, triples, points, phi_1, phi_2, diameter):
             u, v = -(a * here[0] + c * here[1]), -(b * here[0] + d * here[1])
             det = m * o - n * n
             mx, my = (o * u - n * v) / det, (m * v - n * u) / det
-            length = math.hypot(mx, my)
+            length = np.hypot(mx, my)
             share = min(1.0, _STRIDE * diameter / max(length, 1e-300))
             px, py = px + share * mx, py + share * my
             off[row] = _error(features, triples[row], px, py, phi_1, phi_2, here)

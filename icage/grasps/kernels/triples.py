@@ -67,7 +67,7 @@ def contact_at(kind, point, normal, px, py):
     along = normal[0] * dx + normal[1] * dy
     if kind == EDGE:  # the foot of P
         return ContactPoint(px - along * normal[0], py - along * normal[1], normal[0], normal[1])
-    size = max(math.hypot(dx, dy), _NOTHING)
+    size = max(np.hypot(dx, dy), _NOTHING)
     side = 1.0 if along > 0.0 else -1.0
     return ContactPoint(point[0], point[1], side * dx / size, side * dy / size)
 
@@ -160,7 +160,7 @@ def _spread(qx, qy, n, step):
     for k in range(n):
         h = k + 1 if k + 1 < n else 0
         ux, uy, vx, vy = qx[k] - cx, qy[k] - cy, qx[h] - cx, qy[h] - cy
-        size = max(math.hypot(ux, uy), math.hypot(vx, vy))
+        size = max(np.hypot(ux, uy), np.hypot(vx, vy))
         parts = min(_PARTS, max(3, int(math.ceil(size / step))))
         for i in range(parts):
             for j in range(parts - i):

@@ -23,15 +23,44 @@ ICAGE = [sys.executable, "-m", "experiments.cli"]
 HEAVY = {"numpy", "scipy", "shapely", "numba", "mujoco", "matplotlib", "PIL", "pyarrow", "tqdm"}
 
 
-def test_help_loads_nothing_heavy():
+COMMANDS = [
+    module.name.replace("_", "-") for module in pkgutil.iter_modules(experiments.commands.__path__)
+]
+
+
+def loaded_by(*arguments: str) -> set[str]:
+    """Modules that a command has loaded when it ends."""
     script = (
         "import sys\nfrom experiments.cli import main\n"
-        "try:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
-        "print(*sorted(sys.modules), file=sys.stderr)"
+        "try:\n    code = main(sys.argv[1:])\nexcept SystemExit as end:\n    code = end.code\n"
+        "print(*sorted(sys.modules), file=sys.stderr)\nsys.exit(code)"
     )
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True
+    )
     assert done.returncode == 0
-    assert not HEAVY & set(done.stderr.split())
+    return set(done.stderr.split())
+
+
+@pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)], ids=" ".join)
+def test_help_loads_nothing_heavy(command: list[str]):
+    assert not HEAVY & loaded_by(*command, "--help")
+
+
+def test_a_small_plan_is_made_of_little():
+    """It is interpreted: no numba, and of all else only what a plan is made of."""
+    wanted = {"numpy", "shapely"}
+    loaded = loaded_by("plan", str(CASES / "pliers_best.json"))
+    assert wanted <= loaded
+    assert not (HEAVY | {"llvmlite", "svgelements", "tyro", "trimesh"}) - wanted & loaded
+    assert not {name for name in loaded if name.startswith("icage.contact_space")}
+
+
+@pytest.mark.slow
+def test_a_plan_draws_and_moves_nothing():
+    """Nor for disc fingers, whose kernels are compiled and whose true curve scipy follows."""
+    loaded = loaded_by("plan", "pliers")
+    assert not HEAVY - {"numpy", "shapely", "numba", "scipy"} & loaded
 
 
 def test_help_names_every_command():

@@ -16,9 +16,10 @@ from icage.discs.offsets import offsets
 from icage.discs.true_curve import refine
 from icage.errors import GraspError, InputError
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
+from icage.grasps.kernels.hands import HandLimits
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.search import best_grasps
-from icage.grasps.wanted import Aim, Candidate, Wanted
+from icage.grasps.wanted import ANY_HAND, Aim, Candidate, Wanted
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
@@ -67,7 +68,7 @@ def found(name: str, aim: Aim, radius: float = 0.0, top: int = 6) -> tuple[Candi
     rng = np.random.default_rng(0)
     r = radius * outline.diameter
     return tuple(
-        best_grasps(outline, finger_radius=r, top=top, wanted=Wanted(aim), rng=rng)
+        best_grasps(outline, finger_radius=r, top=top, wanted=Wanted(aim, limits=ANY_HAND), rng=rng)
     )  # fmt: skip
 
 
@@ -110,7 +111,7 @@ def test_points_hold_and_the_plan_gives_the_same_levels(name: str, aim: Aim) -> 
         assert is_strict_minimum(ring, cage.contacts, tol=1e-9, margin=0.0)
         assert score(cage, aim) == pytest.approx(grasp.score, rel=1e-9)
         assert grasp.sigma_0 == pytest.approx(cage.sigma_0, rel=1e-9)
-        assert grasp.sigma_0 <= grasp.sigma_first <= grasp.sigma_max
+        assert grasp.sigma_0 < grasp.level == pytest.approx(grasp.score * grasp.sigma_0)
         assert is_fair_hand(grasp.contacts, outline.diameter * (1.0 - 1e-9))
 
 
@@ -167,7 +168,7 @@ def test_no_two_grasps_are_nearly_the_same() -> None:
         for one, other in combinations(found(name, "first"), 2):
             copies = [np.roll(one.contacts, k, axis=0) for k in range(len(one.contacts))]
             apart = [np.linalg.norm(c - other.contacts, axis=1).max() for c in copies]
-            assert min(apart) >= 0.02 * Outline(SMALL[name]).diameter
+            assert min(apart) >= 0.08 * Outline(SMALL[name]).diameter
 
 
 # ------------------------------------------------------------------ none better is missed
@@ -200,9 +201,9 @@ def test_nearly_all_grasps_of_the_grid_are_cages(name: str) -> None:
 @pytest.mark.parametrize("name", SMALL)
 def test_the_largest_cage_is_no_smaller_than_the_largest_first(name: str) -> None:
     """The winner by sigma_first has a cage at least as large: the winner by cage is no smaller."""
-    assert found(name, "cage")[0].score >= found(name, "first")[0].sigma_max / found(name, "first")[
-        0
-    ].sigma_0 * (1.0 - 1e-3)
+    first = found(name, "first")[0]
+    largest = score(plan(Outline(SMALL[name]), first.contacts), "cage")
+    assert found(name, "cage")[0].score >= largest * (1.0 - 1e-3)
 
 
 # ------------------------------------------------------------------ what was asked for
@@ -211,7 +212,7 @@ def test_the_largest_cage_is_no_smaller_than_the_largest_first(name: str) -> Non
 @pytest.mark.parametrize("name", ["notched", "hour glass"])
 def test_wanted_corners(name: str) -> None:
     outline, ring = Outline(SMALL[name]), Ring.of(SMALL[name])
-    wanted = Wanted("first", corners=1)
+    wanted = Wanted("first", corners=1, limits=ANY_HAND)
     corners = ring.vertices[ring.concave]
     grasps = best_grasps(outline, top=4, wanted=wanted, rng=np.random.default_rng(0))
     for grasp in grasps:
@@ -238,7 +239,10 @@ def test_wanted_shape(name: str) -> None:
 
 def test_top_is_the_beginning_of_a_longer_list() -> None:
     whole = found("hour glass", "first")
-    few = best_grasps(Outline(SMALL["hour glass"]), top=2, rng=np.random.default_rng(0))
+    any_hand = Wanted(limits=ANY_HAND)
+    few = best_grasps(
+        Outline(SMALL["hour glass"]), top=2, wanted=any_hand, rng=np.random.default_rng(0)
+    )
     assert [same_as(c) for c in few] == [same_as(c) for c in whole[:2]]
     with pytest.raises(InputError, match=r"top = 0; at least 1 is needed"):
         best_grasps(Outline(SMALL["triangle"]), top=0, rng=np.random.default_rng(0))
@@ -255,7 +259,7 @@ def test_an_outline_without_such_a_grasp() -> None:
 
 
 def same_as(candidate: Candidate) -> tuple[object, ...]:
-    return candidate.contacts.tobytes(), candidate.triple, candidate.score, candidate.sigma_max
+    return candidate.contacts.tobytes(), candidate.triple, candidate.score, candidate.level
 
 
 def test_the_same_seed_gives_the_same_list_with_any_number_of_workers() -> None:
@@ -281,7 +285,8 @@ def test_the_best_score_does_not_depend_on_frame_unit_or_start(name: str, change
         "rolled": np.roll(ring, 2, axis=0),
         "clockwise": ring[::-1],
     }[change]
-    best = best_grasps(Outline(other), top=1, rng=np.random.default_rng(0))[0]
+    any_hand = Wanted(limits=ANY_HAND)
+    best = best_grasps(Outline(other), top=1, wanted=any_hand, rng=np.random.default_rng(0))[0]
     assert best.score == pytest.approx(found(name, "first")[0].score, rel=1e-3)
 
 
@@ -405,7 +410,9 @@ def test_triples_that_are_proposed_do_balance_and_squeeze(family: str, seed: int
     ring = Ring.of(FAMILIES[family](np.random.default_rng(seed)))
     outline = Outline(ring.vertices)
     features = features_of(outline)
-    triples, points = balanced_triples(features, outline, APART * outline.diameter)
+    triples, points = balanced_triples(
+        features, outline, HandLimits.apart(APART * outline.diameter)
+    )
     for triple, p in zip(triples, points, strict=True):
         assert features.allows(triple, p)
         contacts = features.contacts(triple, p)
@@ -437,7 +444,7 @@ def test_every_triple_that_squeezes_somewhere_is_proposed(family: str, seed: int
     assume(len(ring) <= 10)
     outline = Outline(ring.vertices)
     features = features_of(outline)
-    triples, _ = balanced_triples(features, outline, APART * outline.diameter)
+    triples, _ = balanced_triples(features, outline, HandLimits.apart(APART * outline.diameter))
     names = [
         frozenset(
             ("edge" if features.kind[k] == EDGE else "vertex", int(features.number[k]))

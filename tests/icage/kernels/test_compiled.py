@@ -12,7 +12,10 @@ from typing import Any
 import pytest
 
 from icage.cells.kernels.search import explore
-from icage.kernels.compiled import TOOLS, compiled, kernel_digest
+from icage.kernels import compiled as module
+from icage.kernels.compiled import compiled
+from icage.kernels.digest import kernel_digest
+from icage.kernels.machine import TOOLS
 
 SCRIPT = """
 from icage.outline import Outline
@@ -33,7 +36,7 @@ def answer(**environment: str) -> str:
 
 
 def test_a_change_in_any_kernel_makes_every_cached_one_stale() -> None:
-    cache = explore._cache  # type: ignore[attr-defined]
+    cache = explore.dispatcher._cache  # type: ignore[attr-defined]
     assert cache._cache_file._source_stamp == kernel_digest()
     assert cache._cache_file._index_name.endswith(f".{TOOLS}.nbi")
     assert TOOLS in cache._cache_file._data_name(1)
@@ -65,10 +68,11 @@ ONE_KERNEL = """
 import sys
 import llvmlite, numba  # numba first looks which llvmlite it has
 llvmlite.__version__ = sys.argv[1]
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, machine_code_at_once
 from icage.kernels.compiling import when_compiling
 from one_for_the_cache import one
 when_compiling(lambda: print("compiling"))
+machine_code_at_once()
 one = compiled(one)
 print(one(1), one(1.0))
 """
@@ -100,8 +104,9 @@ def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) ->
     assert sorted(name[-6:] for name in names) == ["eA.nbi", "eB.nbi"]
 
 
-def test_no_place_for_a_cache_is_no_error() -> None:
+def test_no_place_for_a_cache_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """numba finds none for a function that has no file."""
+    monkeypatch.setattr(module._process, "at_once", True)
     scope: dict[str, Any] = {}
     exec("def one(x):\n    return x + 1\n", scope)
     assert compiled(scope["one"])(1) == 2

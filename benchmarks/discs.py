@@ -1,0 +1,115 @@
+r"""How long a plan with disc fingers takes against one with point fingers on the same outline.
+
+    python -m benchmarks.discs --json benchmarks/discs.json
+
+Random stars with n vertices and a random grasp for each kind of finger, radius 3 % of the diameter.
+Every plan is timed five times, warm, the two kinds in turn: minimum, median and maximum, [ms] of
+processor time. ``ratio`` is that of the medians over all outlines of one n.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from icage.errors import IcageError
+from icage.outline import Outline
+from icage.planner import plan
+from tests.oracles.geometry import Floats, Ring
+from tests.oracles.targets import grasp_on
+
+SIZES = (10, 20, 30, 40, 50, 60)
+REPEATS = 5
+RADIUS = 0.03
+"""[diameter]"""
+_TRIES = 50
+
+
+def star(n: int, rng: np.random.Generator) -> Floats:
+    """A star-shaped polygon with n vertices."""
+    angle = np.sort(rng.uniform(0.0, 2.0 * np.pi, n))
+    radius = rng.uniform(0.35, 1.0, n)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+
+
+def pair(n: int, rng: np.random.Generator) -> tuple[Outline, Floats, Floats, float] | None:
+    """An outline, the contacts of points and of discs on it, and the discs' radius."""
+    for _ in range(_TRIES):
+        ring = Ring.of(star(n, rng))
+        radius = RADIUS * ring.diameter
+        points, discs = grasp_on(ring, rng), grasp_on(ring, rng, radius)
+        if points is None or discs is None:
+            continue
+        outline = Outline(ring.vertices)
+        try:
+            plan(outline, points)
+            plan(outline, discs, radius)
+        except IcageError:
+            continue  # a contact in a pocket that the fingers cannot enter
+        return outline, points, discs, radius
+    return None
+
+
+def timed(outline: Outline, contacts: Floats, radius: float) -> float:
+    """Processor milliseconds of one plan."""
+    began = time.process_time()
+    plan(outline, contacts, radius)
+    return 1e3 * (time.process_time() - began)
+
+
+def spread(times: list[float]) -> dict[str, float]:
+    """Minimum, median and maximum."""
+    return {"min": min(times), "median": float(np.median(times)), "max": max(times)}
+
+
+def measure(n: int, outlines: int, rng: np.random.Generator) -> dict[str, object]:
+    """Both kinds of plans on some outlines with n vertices."""
+    points: list[list[float]] = []
+    discs: list[list[float]] = []
+    for _ in range(outlines):
+        found = pair(n, rng)
+        if found is None:
+            continue
+        outline, at_points, at_discs, radius = found
+        points.append([])
+        discs.append([])
+        for _ in range(REPEATS):
+            points[-1].append(timed(outline, at_points, 0.0))
+            discs[-1].append(timed(outline, at_discs, radius))
+    one = [float(np.median(t)) for t in points]
+    other = [float(np.median(t)) for t in discs]
+    return {
+        "n": n,
+        "outlines": len(points),
+        "point_ms": spread(one),
+        "disc_ms": spread(other),
+        "ratio": float(np.median(other)) / float(np.median(one)),
+        "runs": {"point_ms": points, "disc_ms": discs},
+    }
+
+
+def main() -> int:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--outlines", type=int, default=11, help="outlines of each size")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="write the figures")
+    options = parser.parse_args()
+    rng = np.random.default_rng(options.seed)
+    rows: list[dict[str, object]] = []
+    for n in SIZES:
+        row = measure(n, options.outlines, rng)
+        rows.append(row)
+        print({key: value for key, value in row.items() if key != "runs"}, flush=True)
+    if options.json is not None:
+        options.json.write_text(json.dumps({"radius": RADIUS, "rows": rows}, indent=1) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+"""Machine code of the kernels: numba and its cache. Imported when the first kernel needs it.
+
+numba's own cache asks only whether the file of a function has changed, not the files of the
+functions it calls: after an update that touches one kernel, its callers would go on running the
+old machine code without a word. Here the stamp is the content of all kernel files together.
+Environments that share a checkout do not share the cache, or each would make the other's stale:
+the versions of numba and llvmlite are part of its files' names, as Python's is by numba's doing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any, Final
+
+import llvmlite
+import numba
+import numba.np.linalg as numba_linalg
+from numba.core.event import Event, Listener, register
+
+from icage.kernels.compiling import announce
+from icage.kernels.digest import kernel_digest
+
+TOOLS: Final = f"numba{numba.__version__}-llvmlite{llvmlite.__version__}"
+"""What makes the machine code."""
+
+_INNER: Final = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""What only other kernels call needs no way in from Python, which would be compiled with it."""
+
+_dispatchers: list[Any] = []
+"""All kernels of this process that have met numba."""
+
+
+def dispatcher_of(function: Callable[..., Any]) -> Any:
+    """The function, to be compiled without fast-math and cached on disk.
+
+    Kernels touch no Python object, so they release its lock and threads share the cores.
+
+    Where numba may write a cache neither beside the file nor into the user's own folder, every
+    process compiles for itself.
+    """
+    return _dispatcher(function, TOOLS)
+
+
+def inner_dispatcher_of(function: Callable[..., Any]) -> Any:
+    """The function as other kernels call it."""
+    return _dispatcher(function, f"inner.{TOOLS}", **_INNER)
+
+
+def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> Any:
+    try:
+        dispatcher: Any = numba.njit(cache=True, fastmath=False, nogil=True, **options)(function)
+    except RuntimeError:
+        dispatcher = numba.njit(fastmath=False, nogil=True, **options)(function)
+        _dispatchers.append(dispatcher)
+        return dispatcher
+    # private names of numba's, checked by a test: without them the cache would go stale unseen
+    cache = dispatcher._cache
+    cache._cache_file = type(cache._cache_file)(
+        cache_path=cache.cache_path,
+        filename_base=f"{cache._impl.filename_base}.{suffix}",
+        source_stamp=kernel_digest(),
+    )
+    _dispatchers.append(dispatcher)
+    return dispatcher
+
+
+class _Watch(Listener):
+    """Announces the first compilation, unless some kernel came from the cache."""
+
+    def on_start(self, event: Event) -> None:
+        kernel = (event.data or {}).get("dispatcher")
+        if kernel in _dispatchers and not any(one.stats.cache_hits for one in _dispatchers):
+            announce()
+
+    def on_end(self, event: Event) -> None:
+        pass
+
+
+def _load_without_blas() -> None:
+    """Load what numba has for arrays, but not scipy.
+
+    numba asks there whether scipy's BLAS is at hand, which takes as long as a plan. No kernel uses
+    it, and scipy is among our requirements: for others the answer is yes, too.
+    """
+    asks = numba_linalg.ensure_blas
+    numba_linalg.ensure_blas = lambda: None
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        numba_linalg.ensure_blas = asks
+
+
+_load_without_blas()
+register("numba:compile", _Watch())
