@@ -13,6 +13,7 @@ from experiments.collection.options import SearchOptions, options_of
 from experiments.collection.rows import Row, searched_rows
 from experiments.io.cluster import Cluster, check_here
 from experiments.io.pieces import in_threads
+from icage.kernels.compiled import long_job
 
 Backend: TypeAlias = Callable[[Iterable[Readable]], Generator[tuple[Readable, list[Row]]]]
 """Searches objects and yields their rows, in any order. Closed early, it stops."""
@@ -27,6 +28,7 @@ def on_threads(options: SearchOptions, threads: int) -> Backend:
 
     def backend(objects: Iterable[Readable]) -> Generator[tuple[Readable, list[Row]]]:
         given_up = Event()
+        long_job()
 
         def progress(_stage: str, _done: int, _total: int, _best: float | None) -> None:
             if given_up.is_set():
@@ -70,4 +72,5 @@ def run_remote(text: str, one: Readable) -> list[Row]:
 def _options(text: str) -> SearchOptions:
     document = json.loads(text)
     check_here(document["versions"])
+    long_job()
     return options_of(document)

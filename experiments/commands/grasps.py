@@ -328,13 +328,11 @@ def _of_folder(args: argparse.Namespace) -> int:
 
     from experiments.collection.options import SearchOptions
     from experiments.collection.run import search_folder
-    from icage.kernels.compiled import long_job
 
     options = SearchOptions(
         wanted_of(args), args.top or 1, args.seed, args.finger_radius, args.width, args.unit,
         args.seconds,
     )  # fmt: skip
-    long_job()
     lines = search_folder(Path(args.object), args.out, options, args.workers, args.scheduler)
     print("\n".join(lines))
     return 0
