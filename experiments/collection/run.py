@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Final
 
-from experiments.collection.backends import on_cluster, on_threads
+from experiments.collection.backends import on_cluster, on_this_machine
 from experiments.collection.kept_rows import KeptRows, Known
 from experiments.collection.objects import Readable, object_files, read_one
 from experiments.collection.options import SearchOptions
@@ -57,7 +57,7 @@ def search_folder(
     files = object_files(folder)
     document = options.document()
     if scheduler is None:
-        backend = on_threads(options, workers or cores())
+        backend = on_this_machine(options, document, workers or cores())
     else:
         backend = on_cluster(scheduler, document)
     kept = KeptRows(place, document)

@@ -188,8 +188,8 @@ def add_parser(subparsers: Any) -> None:
     )  # fmt: skip
     many.add_argument(
         "--workers", metavar="N", type=count,
-        help="threads, of a folder an object each (one per core; of one object 2); no number "
-        "changes the result",
+        help="processes for a folder (one per core), threads for one object (2); no "
+        "number changes the result",
     )  # fmt: skip
     many.add_argument(
         "--scheduler", metavar="ADDRESS", type=file_name,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import shutil
 import subprocess
@@ -177,7 +178,7 @@ def test_a_cluster(alone: Path, folder: Path, grasps: Callable[..., Result]):
 def test_killed_and_gone_on_with(alone: Path, begun: Path, grasps: Callable[..., Result]):
     half = begun.with_name(f".{begun.stem}.0123abcd.parquet")
     half.write_bytes(b"half a table")
-    assert f"{SEARCHED - 1} searched now" in grasps().out
+    assert f"{SEARCHED - 1} searched now" in grasps("--workers", "1").out
     check_same(begun, alone)
 
 
@@ -199,6 +200,51 @@ def test_interrupted(
     check_same(table, alone)
 
 
+def test_a_killed_worker_ends_the_command_and_loses_nothing(
+    alone: Path, folder: Path, grasps: Callable[..., Result], monkeypatch: pytest.MonkeyPatch
+):
+    keep = KeptRows.keep
+
+    def killing(self: KeptRows, *given: Any) -> None:
+        keep(self, *given)
+        for worker in multiprocessing.active_children():
+            worker.kill()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(KeptRows, "keep", killing)
+        line = grasps("--workers", "2").error_line()
+    assert line.startswith("a process that searched was killed")
+    kept = len(parts(folder.parent / "table.parquet"))
+    assert kept >= 1
+    assert f"{SEARCHED - kept} searched now" in grasps("--workers", "1").out
+    check_same(folder.parent / "table.parquet", alone)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="asks /proc")
+def test_workers_end_with_the_command_that_was_killed(folder: Path):
+    killed = """
+import multiprocessing, os, signal, sys
+from experiments.cli import main
+from experiments.collection.kept_rows import KeptRows
+def last(self, *given):
+    print(*(child.pid for child in multiprocessing.active_children()), flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+KeptRows.keep = last
+if __name__ == "__main__":
+    main(sys.argv[1:])
+"""
+    words = ("grasps", str(folder), "--out", str(folder.parent / "t.parquet"), "--workers", "2")
+    done = subprocess.run(
+        [sys.executable, "-c", killed, *words], cwd=ROOT, timeout=300, stdout=subprocess.PIPE
+    )  # returns when nobody holds standard output any more: workers would
+    assert done.returncode == -9
+    workers = done.stdout.split()
+    assert len(workers) == 2
+    for worker in workers:
+        place = Path("/proc", worker.decode(), "stat")
+        assert not place.exists() or place.read_text().rpartition(")")[2].split()[0] in "ZX"
+
+
 def test_a_part_with_a_hole_is_searched_again(
     alone: Path, begun: Path, grasps: Callable[..., Result]
 ):
@@ -206,7 +252,7 @@ def test_a_part_with_a_hole_is_searched_again(
     whole = bytearray(part.read_bytes())
     whole[100:200] = bytes(100)
     part.write_bytes(whole)
-    assert f"{SEARCHED} searched now" in grasps().out
+    assert f"{SEARCHED} searched now" in grasps("--workers", "1").out
     check_same(begun, alone)
 
 
@@ -281,7 +327,7 @@ def test_every_object_fails_by_itself(folder: Path, grasps: Callable[..., Result
     os.mkfifo(folder / "pipe.json")
     (folder / "line\nbreak.json").write_text("{}")
     Path(os.fsdecode(os.fsencode(folder) + b"/\xff.json")).write_text("{}")
-    assert grasps("--least-gap", "100").code == 0
+    assert grasps("--least-gap", "100", "--workers", "1").code == 0
     found = pq.read_table(folder.parent / "table.parquet").to_pylist()
     assert len(found) == 10
     whys = {row["file"]: row["why"] for row in found}
@@ -301,7 +347,7 @@ def test_a_fault_of_our_own_is_one_row(
         raise ZeroDivisionError("of ours")
 
     monkeypatch.setattr(rows, "best_of_case", fault)
-    assert grasps().code == 0
+    assert grasps("--workers", "1").code == 0
     found = pq.read_table(folder.parent / "table.parquet").to_pylist()
     why = {row["why"] for row in found if row["file"] != BROKEN}
     assert why == {"internal: ZeroDivisionError: of ours (our fault)"}
