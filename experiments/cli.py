@@ -19,11 +19,9 @@ from typing import Any, NoReturn, TextIO
 
 import experiments.commands
 import icage
+from experiments.io.one_line import one_line
 from icage.errors import InputError
 from icage.kernels.compiling import when_compiling
-
-_LONGEST = 800
-"""Characters of an error line; a file name may be longer than anyone reads."""
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What a full, locked or broken disk answers."""
@@ -132,11 +130,7 @@ def _say_compiling() -> None:
 
 def _say(message: str) -> None:
     """One line on standard error, whatever the message holds."""
-    line = " ".join(message.split())
-    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
-    if len(line) > _LONGEST:
-        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
-    print(f"icage: error: {line}", file=sys.stderr, flush=True)
+    print(f"icage: error: {one_line(message)}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
-"""``icage grasps OUTLINE-OR-CASE``: good target grasps of an object, or all of one hand."""
+"""``icage grasps OUTLINE-OR-CASE``: good target grasps of an object, or all of one hand; or those
+of every object of a folder, as a table.
+"""
 
 from __future__ import annotations
 
@@ -52,9 +54,10 @@ def add_parser(subparsers: Any) -> None:
     """Options of the command."""
     parser = subparsers.add_parser(
         "grasps",
-        help="the best target grasps of an object",
+        help="the best target grasps of an object, or of every object of a folder",
         description="Search the three-finger immobilizing grasps of an object for those with the "
-        "largest\ncages, or list all immobilizing grasps of one given hand (--phi).",
+        "largest\ncages, or list all immobilizing grasps of one given hand (--phi). Of a folder: "
+        "the best grasps\nof every drawing (*.svg) and case file (*.json) in it, as a table.",
         epilog=PHI_SKETCH,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -62,7 +65,7 @@ def add_parser(subparsers: Any) -> None:
         "object",
         metavar="OUTLINE-OR-CASE",
         type=file_name,
-        help="drawing, case file, or a shipped object's name",
+        help="drawing, case file, or a shipped object's name; or a folder of them, with --out",
     )
     parser.add_argument(
         "--finger-radius",
@@ -80,7 +83,9 @@ def add_parser(subparsers: Any) -> None:
         help="list the grasps of one given hand: "
         "phi_1 and phi_2 in degrees, as in the sketch below",
     )
-    parser.add_argument("--top", type=count, default=10, metavar="K", help="how many to list (10)")
+    parser.add_argument(
+        "--top", type=count, metavar="K", help="how many to list (10; of each object of a folder 1)"
+    )
     parser.add_argument(
         "--aim",
         choices=("first", "cage"),
@@ -151,7 +156,8 @@ def add_parser(subparsers: Any) -> None:
         "--seconds",
         type=positive,
         metavar="S",
-        help="stop the search after S seconds with what there is (Ctrl-C does so too)",
+        help="stop the search (of a folder: each) after S seconds with what there is (Ctrl-C does "
+        "so too); what it has by then is not the same every time",
     )
     parser.add_argument(
         "--figure", metavar="FILE", type=file_name, help="draw all grasps listed into FILE (.svg)"
@@ -170,6 +176,25 @@ def add_parser(subparsers: Any) -> None:
         help="write each grasp listed as a case file: DIR/1.json, DIR/2.json, ...",
     )
     add_json(parser)
+    many = parser.add_argument_group(
+        "many objects",
+        "The same command goes on after anything, kill -9 too: what is done is kept in a hidden "
+        "folder beside FILE. Lengths are in each object's own unit, --width and --unit for its "
+        "drawings only. Each object has a seed of its own, from --seed and its name.",
+    )
+    many.add_argument(
+        "--out", metavar="FILE", type=file_name,
+        help="the table of a folder (.parquet): a row a grasp, or one that says why there is none",
+    )  # fmt: skip
+    many.add_argument(
+        "--workers", metavar="N", type=count,
+        help="processes for a folder (one per core), threads for one object (2); no "
+        "number changes the result",
+    )  # fmt: skip
+    many.add_argument(
+        "--scheduler", metavar="ADDRESS", type=file_name,
+        help="search the folder on the dask.distributed cluster at tcp://HOST:PORT",
+    )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> int:
@@ -183,6 +208,9 @@ def run(args: argparse.Namespace) -> int:
     from icage.formats.json_out import write_json
     from icage.formats.load import load_object
 
+    if _is_folder(args):
+        return _of_folder(args)
+    args.top = args.top or _LISTED
     case = load_object(args.object, width=args.width, unit=args.unit)
     check_output("--json", args.json, *case.sources)
     if args.finger_radius is not None:
@@ -254,6 +282,62 @@ _LIMITS = (
 )  # fmt: skip
 
 
+_LISTED = 10
+
+_OF_ONE = ("figure", "cases", "json")
+_OF_MANY = ("out", "scheduler")
+
+
+def _is_folder(args: argparse.Namespace) -> bool:
+    """Whether a folder of objects is meant, with the options for one; a shipped name is no folder.
+
+    Raises
+    ------
+    InputError:
+        An option is for the other.
+    """
+    from pathlib import Path
+
+    from icage.errors import InputError
+    from icage.formats.load import is_shipped
+
+    shipped = is_shipped(args.object)
+    try:
+        folder = Path(args.object).is_dir() and not shipped
+    except OSError:  # a name that no file can have: the error comes from whoever reads it
+        folder = False
+    if folder:
+        for name in _OF_ONE:
+            if getattr(args, name) is not None:
+                raise InputError(f"--{name} is for one object; {args.object!r} is a folder")
+        if args.phi is not None and args.within is None:
+            raise InputError("--phi without --within lists the grasps of one object, not a folder")
+        if args.out is None:
+            raise InputError(f"{args.object!r} is a folder: --out FILE.parquet is needed")
+        return True
+    for name in _OF_MANY:
+        if getattr(args, name) is not None:
+            what = f"the shipped object, ./{args.object} a folder" if shipped else "no folder"
+            hint = " (--json FILE writes the grasps of one object)" if name == "out" else ""
+            raise InputError(f"--{name} is for a folder; {args.object!r} is {what}{hint}")
+    return False
+
+
+def _of_folder(args: argparse.Namespace) -> int:
+    from pathlib import Path
+
+    from experiments.collection.options import SearchOptions
+    from experiments.collection.run import search_folder
+
+    options = SearchOptions(
+        wanted_of(args), args.top or 1, args.seed, args.finger_radius, args.width, args.unit,
+        args.seconds,
+    )  # fmt: skip
+    lines = search_folder(Path(args.object), args.out, options, args.workers, args.scheduler)
+    print("\n".join(lines))
+    return 0
+
+
 def _refuse_limits(args: argparse.Namespace) -> None:
     """All grasps of one hand are listed: limits would be asked of nothing."""
     from icage.errors import InputError
@@ -321,7 +405,7 @@ def _best(case: Case, args: argparse.Namespace) -> PlannedGrasps:
     from icage.grasps.of_case import best_of_case
 
     wanted, rng = wanted_of(args), np.random.default_rng(args.seed)
-    workers = min(WORKERS, os.cpu_count() or 1)
+    workers = args.workers or min(WORKERS, os.cpu_count() or 1)
     with search_bar() as progress:
         return best_of_case(case, args.top, wanted, rng, workers, progress, args.seconds)
 
@@ -382,6 +466,7 @@ def _tell(planned: PlannedGrasps, args: argparse.Namespace) -> None:
 
 
 def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
+    from experiments.cases.free_gap import free_gap
     from icage.grasps.planned import score
 
     return {
@@ -391,7 +476,7 @@ def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         "score": score(cage, aim),
-        "free_gap": _free_gap(cage),
+        "free_gap": free_gap(cage),
         "verdict": cage.status,
         "free_fingers": cage.grasps[0].free_fingers,
         "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
@@ -400,6 +485,7 @@ def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
 
 def _print(case: Case, planned: PlannedGrasps, args: argparse.Namespace) -> None:
     from experiments.cases.asked import size_words
+    from experiments.cases.free_gap import free_gap
     from icage.grasps.planned import score
 
     aim, radius = args.aim, case.finger_radius
@@ -422,7 +508,7 @@ def _print(case: Case, planned: PlannedGrasps, args: argparse.Namespace) -> None
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
         print(
             f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g} "
-            f"{_free_gap(cage):9.4g} {alike:5d}  {phi:<17} {points}"
+            f"{free_gap(cage):9.4g} {alike:5d}  {phi:<17} {points}"
         )
 
 
@@ -446,11 +532,6 @@ def _limit_words(case: Case, args: argparse.Namespace) -> str:
         plural = "es" if len(args.avoid) > 1 else ""
         words.append(f"that touch nothing on {len(args.avoid)} stretch{plural} of the outline")
     return ", ".join(words)
-
-
-def _free_gap(cage: Cage) -> float:
-    """Least free gap between two fingers in the grasp, [unit]."""
-    return cage.hand.least_gap([complex(cage.sigma_0)]) - 2.0 * cage.finger_radius
 
 
 def _fingers(radius: float, unit: str) -> str:

@@ -7,10 +7,11 @@ Only regular files are replaced. A link is followed; a device or a pipe (``/dev/
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import stat
 import tempfile
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -83,6 +84,15 @@ def check_folder_writable(folder: Path) -> None:
         They cannot.
     """
     tempfile.TemporaryFile(dir=folder).close()
+
+
+def leftovers(path: Path) -> Iterator[Path]:
+    """What processes that were killed while they wrote ``path`` have left beside it.
+
+    So has one that is writing it now: ask where nobody can be.
+    """
+    name = re.compile(rf"\.{re.escape(path.stem[:40])}\.[0-9a-f]{{8}}{re.escape(path.suffix)}")
+    return (part for part in path.parent.iterdir() if name.fullmatch(part.name))
 
 
 @contextmanager

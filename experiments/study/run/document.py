@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from experiments.io.changes import changes
 from experiments.io.versions import versions
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.distributions import Distribution
@@ -143,16 +144,9 @@ def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
 
 
 def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    loose = _loose(new)
-    for key in sorted({*old["config"], *new["config"]}):
-        was, now = old["config"].get(key), new["config"].get(key)
-        if was != now and key not in loose:
-            yield f"{key} was {was!r}, is {now!r}"
+    yield from changes(old["config"], new["config"], _loose(new))
     if old["name"] != new["name"]:
         yield f"the case was {old['name']!r}, is {new['name']!r}"
     if old["case"] != new["case"] or old["unit"] != new["unit"]:
         yield "the case is another one"
-    for name in sorted({*old["versions"], *new["versions"]}):
-        was, now = old["versions"].get(name), new["versions"].get(name)
-        if was != now:
-            yield f"{name} was {was}, is {now}"
+    yield from changes(old["versions"], new["versions"], shown=str)

@@ -21,14 +21,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from experiments.io.arrow_table import Table
-from icage.errors import InputError, OutputError
+from experiments.io.held_folder import held_folder, writable
+from experiments.io.parquet_files import read_table, sync_folder, words_of, write_table
+from icage.errors import InputError
 from icage.formats.json_out import json_text
 from icage.formats.whole_files import whole_file
-
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None
 
 JSON, TRIALS, PAGE = "study.json", "trials.parquet", "results.md"
 SHARDS: Final = "shards"
@@ -61,30 +58,15 @@ class StudyFolder:
         InputError:
             Another process holds it.
         """
-        with self._writable():
-            self.path.mkdir(parents=True, exist_ok=True)
-        if fcntl is None:
+        with held_folder(self.path, "study"):
             yield
-            return
-        handle = os.open(self.path, os.O_RDONLY)
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            os.close(handle)
-            raise InputError(f"another icage study is running in {str(self.path)!r}") from error
-        except OSError:  # a file system without locks
-            pass
-        try:
-            yield
-        finally:
-            os.close(handle)
 
     def shards(self) -> dict[tuple[int, int], Path]:
         """(first, last) trial to file of every whole shard of this study; others are removed.
 
         A shard that cannot be read, is of another study or overlaps an earlier one is run again.
         """
-        with self._writable():
+        with writable(self.path):
             return self._shards()
 
     def _shards(self) -> dict[tuple[int, int], Path]:
@@ -108,13 +90,11 @@ class StudyFolder:
 
     def _read(self, path: Path) -> Table | None:
         """A table of this study, every page of it as it was written; else None."""
-        try:
-            table = pq.read_table(path, page_checksum_verification=True)
-            words = table.schema.metadata or {}
-            own = words.get(_KEY) == self.fingerprint.encode() and "trial" in table.column_names
-        except (OSError, ValueError, pa.ArrowException):
+        table = read_table(path)
+        if table is None:
             return None
-        return table if own else None
+        own = words_of(table).get(_KEY) == self.fingerprint.encode()
+        return table if own and "trial" in table.column_names else None
 
     def keep(self, table: Table, first: int) -> None:
         """Write a shard, whole and on the disk before it gets its name.
@@ -126,7 +106,7 @@ class StudyFolder:
         """
         last = first + table.num_rows - 1
         path = self.path / SHARDS / f"trials-{first:09d}-{last:09d}.parquet"
-        with self._writable():
+        with writable(self.path):
             path.parent.mkdir(parents=True, exist_ok=True)
         self._write(table, path)
 
@@ -138,12 +118,12 @@ class StudyFolder:
     def reopen(self, table: Table) -> None:
         """Make one shard of the whole table, for a study that goes on."""
         self.keep(table, 0)
-        with self._writable():
+        with writable(self.path):
             (self.path / TRIALS).unlink()
 
     def clear(self) -> None:
         """Remove the shards: they are in the table."""
-        with self._writable():
+        with writable(self.path):
             for path in (self.path / SHARDS).glob("*trials-*"):
                 path.unlink()
         with suppress(OSError):
@@ -172,7 +152,7 @@ class StudyFolder:
 
     def sweep(self) -> None:
         """Remove what a killed process had half written."""
-        with self._writable():
+        with writable(self.path):
             for path in self.path.glob(".*"):
                 if _PART.fullmatch(path.name):
                     path.unlink()
@@ -181,25 +161,8 @@ class StudyFolder:
         """The whole table if it is there and of this study."""
         return self._read(self.path / TRIALS)
 
-    @contextmanager
-    def _writable(self) -> Generator[None]:
-        try:
-            yield
-        except OSError as error:
-            raise OutputError(
-                f"{str(self.path)!r} cannot be written to: {error.strerror or error}"
-            ) from error
-
     def _write(self, table: Table, path: Path) -> None:
-        words = {_KEY: self.fingerprint.encode()}
-        with whole_file(path) as part, part.open("wb") as stream:
-            pq.write_table(
-                table.replace_schema_metadata(words), stream,
-                compression="zstd", write_page_checksum=True,
-            )  # fmt: skip
-            stream.flush()
-            os.fsync(stream.fileno())
-        _sync_folder(path.parent)
+        write_table(table, path, {_KEY: self.fingerprint.encode()})
 
 
 def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, Table]]:
@@ -236,14 +199,4 @@ def write_document(document: dict[str, Any], folder: Path) -> None:
         stream.write(json_text(document))
         stream.flush()
         os.fsync(stream.fileno())
-    _sync_folder(folder)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Have the disk know the new name: after a power cut it is there or it is not."""
-    with suppress(OSError):  # some systems open no folders
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+    sync_folder(folder)

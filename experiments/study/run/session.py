@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ from experiments.cases.chosen import Chosen, chosen
 from experiments.cases.with_discs import physical_case
 from experiments.io.arrow_table import Table
 from experiments.io.options import check_folder
+from experiments.io.pieces import cores
 from experiments.io.progress import stage_bar
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
 from experiments.study.inputs.fields import DRAWING
@@ -189,14 +189,6 @@ def _backend(session: Session, threads: int | None, scheduler: str | None) -> Ba
     from experiments.study.run.cluster import on_cluster
 
     return on_cluster(scheduler, session.document)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # macOS, Windows
-        return os.cpu_count() or 1
 
 
 def _write_page(document: dict[str, Any], folder: Path) -> None:

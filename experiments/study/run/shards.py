@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import dataclass
 from typing import Any, Final
@@ -13,6 +12,7 @@ import pyarrow as pa
 
 from experiments.io.arrow_table import Table
 from experiments.io.intervals import stopped_at
+from experiments.io.pieces import in_threads
 from experiments.study.run.folder import StudyFolder, read_shards
 from experiments.study.run.missing_trials import missing
 from experiments.study.run.rows import table_of, target_trials
@@ -140,23 +140,8 @@ def on_threads(threads: int) -> Backend:
     """Shards on a pool of threads of this process; the engine and our kernels share the cores."""
 
     def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, Table]]:
-        waiting = iter(spans)
-        running: dict[Future[Table], Span] = {}
-        pool = ThreadPoolExecutor(threads)
-        try:
-            with no_log():
-                while True:
-                    for span in waiting:
-                        running[pool.submit(shard_table, study, span)] = span
-                        if len(running) >= threads + 1:
-                            break
-                    if not running:
-                        return
-                    done, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in done:
-                        yield running.pop(future), future.result()
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        with no_log():
+            yield from in_threads(lambda span: shard_table(study, span), spans, threads)
 
     return backend
 

@@ -17,8 +17,10 @@ from typing import Any
 import pytest
 
 from experiments.environment import ROOT
+from experiments.io import cluster as clusters
+from experiments.io.cluster import ClusterError
 from experiments.study.run import cluster
-from experiments.study.run.cluster import ClusterError, on_cluster, run_remote
+from experiments.study.run.cluster import on_cluster, run_remote
 from experiments.study.run.folder import StudyFolder
 from tests.experiments.study.studies import Studied, left_alone
 
@@ -213,7 +215,7 @@ def test_no_scheduler(study: Studied, address: str, words: str):
 
 
 def test_somebody_else_listens_there(study: Studied, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(cluster, "_SCHEDULER_WAIT", 1)
+    monkeypatch.setattr(clusters, "_SCHEDULER_WAIT", 1)
     with closing(socket.create_server(("127.0.0.1", 0))) as mute:
         address = f"tcp://127.0.0.1:{mute.getsockname()[1]}"
         begun = time.monotonic()

@@ -1,0 +1,136 @@
+"""The objects of a folder: which files may hold one, and what each is as it is read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final, NoReturn
+
+from experiments.cases.chosen import check_radius
+from experiments.collection.options import SearchOptions
+from experiments.io.one_line import one_line
+from icage.case import Case
+from icage.errors import InputError
+from icage.formats.load import load_object
+
+DRAWINGS: Final = ".svg"
+
+CASES: Final = ".json"
+
+_DIGITS: Final = 16
+"""Hexadecimal digits of a digest that are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Readable:
+    """An object that can be searched.
+
+    Attributes
+    ----------
+    file:
+        Where it is from, below the folder, with slashes.
+    digest:
+        Of the object as it was read: with another one, rows of it are those of another object.
+    seed:
+        Of its own search; ``icage grasps FILE --seed`` takes it.
+    """
+
+    file: str
+    digest: str
+    seed: int
+    case: Case
+
+
+@dataclass(frozen=True, slots=True)
+class Unreadable:
+    """A file that holds no object, and why."""
+
+    file: str
+    digest: str
+    seed: int
+    why: str
+
+
+def object_files(folder: Path) -> list[tuple[str, Path]]:
+    """Drawings and case files of a folder and of those in it, by name, in the order of the table.
+
+    Hidden files and folders are left out; links to folders are not followed.
+
+    Raises
+    ------
+    InputError:
+        There is none, or a folder cannot be looked into.
+    """
+    found: list[tuple[str, Path]] = []
+    for place, folders, names in os.walk(folder, onerror=_unseen):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        for name in names:
+            path = Path(place, name)
+            if not name.startswith(".") and path.suffix.lower() in (DRAWINGS, CASES):
+                below = path.relative_to(folder).as_posix()
+                text = os.fsencode(below).decode("utf-8", "backslashreplace")
+                found.append((text, path))
+    if not found:
+        raise InputError(f"{str(folder)!r} holds no drawing (*.svg) and no case file (*.json)")
+    return sorted(found)
+
+
+def _unseen(error: OSError) -> NoReturn:
+    raise InputError(f"{error.filename!r} cannot be looked into: {error.strerror}") from error
+
+
+def read_one(file: str, path: Path, options: SearchOptions) -> Readable | Unreadable:
+    """The object in a file; whatever is wrong with it is the object's own, not the folder's."""
+    seed = _seed(options.seed, file)
+    try:
+        case = _read(path, options)
+    except Exception as error:
+        # a file's name below the folder says enough, and it is the same wherever the folder is
+        why = reason(error).replace(f"{path.parent}{os.sep}", "").removeprefix(f"{path.name}: ")
+        return Unreadable(file, _digest({"why": why}), seed, why)
+    content = {
+        "name": case.name, "unit": case.unit, "vertices": case.outline.vertices.tolist(),
+        "finger_radius": case.finger_radius,
+    }  # fmt: skip
+    return Readable(file, _digest(content), seed, case)
+
+
+def _read(path: Path, options: SearchOptions) -> Case:
+    if path.exists() and not path.is_file():
+        raise InputError("this is no regular file")
+    if path.suffix.lower() == DRAWINGS:
+        case = load_object(path, width=options.width, unit=options.unit)
+    else:
+        case = load_object(path)
+    if options.finger_radius is not None:
+        case = replace(case, finger_radius=options.finger_radius)
+    check_radius(case)
+    return replace(case, sources=(), size_from="")
+
+
+def reason(error: Exception) -> str:
+    """Why there is no grasp, in one line; faults of our own say so.
+
+    Raises
+    ------
+    MemoryError:
+        Nothing is wrong with the object.
+    """
+    if isinstance(error, MemoryError):
+        raise error
+    if isinstance(error, InputError):
+        return one_line(str(error))
+    return one_line(f"internal: {type(error).__name__}: {error} (our fault)")
+
+
+def _seed(seed: int, file: str) -> int:
+    """A seed of the file's own: no other file, no order and no number of workers can touch it."""
+    return int.from_bytes(hashlib.sha256(f"{seed} {file}".encode()).digest()[:8], "big") >> 1
+
+
+def _digest(content: dict[str, Any]) -> str:
+    text = json.dumps(content, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]

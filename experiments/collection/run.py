@@ -1,0 +1,127 @@
+"""One call of ``icage grasps FOLDER``: what is missing is searched, then the table is written."""
+
+from __future__ import annotations
+
+import stat
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Final
+
+from experiments.collection.backends import on_cluster, on_this_machine
+from experiments.collection.kept_rows import KeptRows, Known
+from experiments.collection.objects import Readable, object_files, read_one
+from experiments.collection.options import SearchOptions
+from experiments.collection.rows import Row, unreadable_row
+from experiments.io.options import check_output
+from experiments.io.pieces import cores
+from experiments.io.progress import stage_bar
+from icage.errors import InputError
+
+_NAMED: Final = 10
+"""Files without a grasp that are told of one by one."""
+
+
+def check_table(out: str) -> Path:
+    """The place of the table, looked at before any work.
+
+    Raises
+    ------
+    InputError:
+        It is no name for a Parquet file, or cannot be written.
+    """
+    if Path(out).suffix.lower() != ".parquet":
+        raise InputError(f"--out {out!r}: a name ending in .parquet is needed")
+    check_output("--out", out)
+    place = Path(out).resolve()
+    if place.exists() and not stat.S_ISREG(place.stat().st_mode):
+        raise InputError(f"--out {out!r} is no regular file")
+    return place
+
+
+def search_folder(
+    folder: Path, out: str, options: SearchOptions, workers: int | None, scheduler: str | None
+) -> list[str]:
+    """Search every object of the folder that has no rows yet, and write all; the lines to print.
+
+    The table is the same whatever was searched before, by how many, and in whatever order.
+
+    Raises
+    ------
+    InputError:
+        The folder holds no objects, the table cannot be written or is of another search, or the
+        cluster is no use.
+    """
+    place = check_table(out)
+    files = object_files(folder)
+    document = options.document()
+    if scheduler is None:
+        backend = on_this_machine(options, document, workers or cores())
+    else:
+        backend = on_cluster(scheduler, document)
+    kept = KeptRows(place, document)
+    with kept.alone():
+        run = _Run(files, options, kept.known())
+        with stage_bar() as bar, closing(backend(run.missing())) as answers:
+            for one, rows in answers:
+                kept.keep(one.file, rows)
+                run.rows[one.file, one.digest] = rows
+                run.searched += 1
+                bar("objects", len(run.rows), len(files))
+        rows = run.in_order()
+        kept.finish(rows)
+    _tell([row for row in rows if row["rank"] is None])
+    return _summary(run, rows, folder, out)
+
+
+class _Run:
+    """The objects in their order, and the rows of those that have some."""
+
+    def __init__(self, files: list[tuple[str, Path]], options: SearchOptions, known: Known) -> None:
+        self._files, self._options, self._known = files, options, known
+        self._order: list[tuple[str, str]] = []
+        self.rows: Known = {}
+        self.searched = 0
+
+    def missing(self) -> Iterator[Readable]:
+        """Objects to search, read when they are asked for."""
+        for file, path in self._files:
+            one = read_one(file, path, self._options)
+            key = (file, one.digest)
+            self._order.append(key)
+            if key in self._known:
+                self.rows[key] = self._known[key]
+            elif isinstance(one, Readable):
+                yield one
+            else:
+                self.rows[key] = [unreadable_row(one)]
+
+    def in_order(self) -> list[Row]:
+        """All rows: by file, then by rank."""
+        if len(self._order) != len(self._files):
+            raise RuntimeError("not every object of the folder was looked at")
+        return [{"rank": None, **row} for key in self._order for row in self.rows[key]]
+
+
+def _tell(failed: list[Row]) -> None:
+    """Files without a grasp, on standard error."""
+    lines = [f"{row['file']}: {row['why']}" for row in failed[:_NAMED]]
+    if len(failed) > _NAMED:
+        lines.append(f"and {len(failed) - _NAMED} more without a grasp: column why of the table")
+    for line in lines:
+        print(f"icage: {line}", file=sys.stderr)
+
+
+def _summary(run: _Run, rows: list[Row], folder: Path, out: str) -> list[str]:
+    failed = sum(row["rank"] is None for row in rows)
+    count = len(run.rows)
+    late = sum(row.get("ended") is not None for row in rows if row["rank"] in (None, 1))
+    lines = [
+        f"{folder}: {count} objects, {count - failed} with a grasp, {failed} without; "
+        f"{run.searched} searched now"
+    ]
+    if late:
+        lines.append(f"{late} searches were out of time: the best of what they had")
+    lines.append(f"{len(rows)} rows in {out}")
+    return lines
