@@ -2,11 +2,10 @@
 
 ``python -m benchmarks.grasps [--json FILE] [--only NAME] [--discs-only] [--random N]``
 
-Tools of ``benchmarks/outlines`` and the shipped ones, and stars, blobs and a rounded shape that are
-drawn anew from the seed, with point fingers and with discs of 2 % of the diameter, ten grasps each:
-the whole of ``icage grasps`` after its imports. ``--random N`` also evaluates N random grasps of each
-(random triples of contact features, random points of concurrency) and says which of them beat the
-search: none should.
+Tools of ``benchmarks/outlines`` and the shipped ones, and stars and blobs drawn from a seed, with
+point fingers and with discs of 2 % of the diameter, ten grasps each: the whole of ``icage grasps``
+after its imports. ``--random N`` evaluates N random grasps, too (random triples of features and
+points of concurrency), and says which of them beat the search: none should.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 >>> case = icage.load("pliers")
 >>> cage = icage.plan(case)
 >>> cage
-<Cage pliers/1_best: sigma 50.4419 < 96.8576 <= 96.8656 mm, 2 grasps>
+<Cage pliers/1_best: sigma 50.4419 < 96.858 <= 96.8658 mm, 2 grasps>
 
 Everything a user needs is here; it is loaded when it is first named, so that a command that only
 prints its help loads neither shapely nor numba. Inside the project, import from the modules.

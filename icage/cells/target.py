@@ -23,6 +23,8 @@ from icage.cells.largest_sigma import opens_to
 from icage.errors import GeometryError
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, SAME_POINT, TARGET_SHIFT, TARGET_TURN
 
+_MAX_CELLS = minimum.MOST_CELLS
+
 
 @dataclass(frozen=True, slots=True)
 class Target:
@@ -56,11 +58,11 @@ def find_target(
     """
     found = minimum.nearest_minimum(
         free_space.pieces, free_space.z, _hand(wanted), reach, turn, free_space.cap,
-        free_space.worst,
+        free_space.worst, _MAX_CELLS,
     )  # fmt: skip
-    if found.total > minimum.MOST_CELLS:
+    if found.total > _MAX_CELLS:
         raise GeometryError(
-            f"{found.total} cells meet round the contacts; at most {minimum.MOST_CELLS} fit"
+            f"{found.total} cells meet round the contacts; at most {_MAX_CELLS} fit"
         )
     if found.row < 0:
         return None

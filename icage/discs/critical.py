@@ -17,7 +17,6 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import nnls
 
 from icage.arrays import BoolArray, FloatArray
 from icage.geometry.exterior import without_straight_vertices
@@ -499,6 +498,8 @@ def _pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float
     if not columns.shape[1]:  # scipy 1.17.1 corrupts its memory when there is no column
         return np.zeros(0), float(np.linalg.norm(wanted))
     try:
+        from scipy.optimize import nnls  # only now: scipy is slow to load
+
         found, miss = nnls(columns, wanted)
     except RuntimeError:  # too many steps: as good as unbalanced
         return np.zeros(columns.shape[1]), float(np.linalg.norm(wanted))

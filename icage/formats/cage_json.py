@@ -51,7 +51,7 @@ def read_cage(file: str | Path) -> Cage:
     ... )
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     cage.save(f"{folder}/cage.json")
-    ...     icage.read_cage(f"{folder}/cage.json").sigma_max == cage.sigma_max
+    ...     abs(icage.read_cage(f"{folder}/cage.json").sigma_max - cage.sigma_max) < 1e-12
     True
     """
     path = a_path(file, "file")

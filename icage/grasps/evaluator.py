@@ -69,7 +69,9 @@ class GraspEvaluator:
         self.outline = outline if grown is None else grown.inner
         arc = None if grown is None else (outline.vertices, radius, grown.sagitta)
         self.features: Features = features_of(self.outline, arc=arc)
-        self._beside = neighbours(self.features)
+        # whoever asks for corners keeps them
+        own = np.arange(len(self.features.kind))[:, None]
+        self.beside = own if wanted.corners else neighbours(self.features)
         self.limits = _limits(outline, radius, wanted)
         self._pieces: Pieces
         widest = HandShape(complex(0.5, (WIDEST**2 - 0.25) ** 0.5))
@@ -111,7 +113,7 @@ class GraspEvaluator:
     def rows_of(self, triples: IntArray, points: FloatArray) -> tuple[IntArray, Findings]:
         """The same, and the rows that they came from."""
         found, used = tried_jobs(
-            self._pieces, self._origin, self._ring, self.features, self._beside, triples, points,
+            self._pieces, self._origin, self._ring, self.features, self.beside, triples, points,
             self.limits, self._sought,
         )  # fmt: skip
         self.broken_off += int((found.verdict == Verdict.BROKEN_OFF).sum())
@@ -125,7 +127,7 @@ class GraspEvaluator:
         ``stride`` [unit] is the size of the first simplex.
         """
         found, used, point, _ = climb(
-            self._pieces, self._origin, self._ring, self.features, self._beside, self.limits,
+            self._pieces, self._origin, self._ring, self.features, self.beside, self.limits,
             self._sought, triple, start, stride, steps,
         )  # fmt: skip
         return self._kept_rows(

@@ -19,7 +19,6 @@ from icage.errors import GraspError, InputError
 from icage.geometry.near_frame import NearFrame
 from icage.grasps.crew import Crew, OutOfTimeError, Progress
 from icage.grasps.evaluator import SEGMENTS, GraspEvaluator
-from icage.grasps.features import neighbours
 from icage.grasps.findings import Findings, distinct, groups
 from icage.grasps.wanted import Candidate, Wanted
 from icage.outline import Outline
@@ -241,12 +240,12 @@ class _Search:
         scale = size * np.resize(np.array([0.02, 0.05, 0.1, 0.2]), (_AROUND, 1))
         shift = scale * self.rng.standard_normal((len(best), _AROUND, 2))
         points = (best.points[:, None] + shift).reshape(-1, 2)
-        beside = neighbours(evaluator.features)
+        beside = evaluator.beside
         triples = [np.repeat(best.triples, _AROUND, axis=0)]
         where = [points]
         for finger in range(best.triples.shape[1]):
             other = best.triples.copy()
-            for along in range(_BESIDE):
+            for along in range(min(_BESIDE, beside.shape[1])):
                 other[:, finger] = beside[best.triples[:, finger], along]
                 triples.append(other.copy())
                 where.append(best.points + 0.02 * size * self.rng.standard_normal((len(best), 2)))

@@ -51,7 +51,7 @@ class Nearest(NamedTuple):
     cells:
         (n, fingers) the cell of each.
     total:
-        How many cells meet round the contacts; none was looked at if more than ``MOST_CELLS``.
+        How many cells meet round the contacts; none was looked at if there are too many.
     """
 
     row: int
@@ -129,19 +129,19 @@ def is_local_minimum(pieces, z, here, sigma, cap, worst):
 
 
 @compiled
-def nearest_minimum(pieces, z, wanted, reach, turn, cap, worst):
+def nearest_minimum(pieces, z, wanted, reach, turn, cap, worst, most):
     """The local minimum nearest to a configuration, if there is one within ``reach``.
 
     ``reach`` [diameter] bounds how far a finger may be from where it was asked to be, ``turn``
     [rad] the angle. That a minimum is too shallow to count is left to the caller, who searches from
-    it anyway.
+    it anyway. Nothing is looked at where more than ``most`` cells meet round the contacts.
     """
     size = pieces.diameter
     nowhere = Plateau(False, 0.0, 0.0, 0.0, 0.0)
-    cells, total = cells_near(pieces, z, wanted, reach * size, MOST_CELLS)
+    cells, total = cells_near(pieces, z, wanted, reach * size, most)
     near = np.empty((len(cells), 7))
     kept = np.empty(len(cells), np.int64)
-    if total > MOST_CELLS:
+    if total > most:
         return Nearest(-1, nowhere, near, cells, total)
     low = births(pieces, z, cells, cap, worst)
     count = 0

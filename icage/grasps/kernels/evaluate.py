@@ -142,7 +142,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     cap = pieces.diameter / shortest
     worst = 1e-12 * pieces.diameter
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
-    held = nearest_minimum(pieces, z, wanted, TARGET_SHIFT, TARGET_TURN, cap, worst)
+    held = nearest_minimum(pieces, z, wanted, TARGET_SHIFT, TARGET_TURN, cap, worst, MOST_CELLS)
     if held.row < 0 or held.plateau.long or held.total > MOST_CELLS:
         return NO_MINIMUM, 0, 0.0, 0.0
     near = held.near[held.row]

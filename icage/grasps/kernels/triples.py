@@ -144,6 +144,7 @@ def _squeezing_area(kind, point, normal, planes, a, b, c, px, py, limits, x, y, 
     area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
     if area < 0.0:  # the other way round, for the hand
         x[1], y[1], x[2], y[2] = x[2], y[2], x[1], y[1]
+        fx[1], fy[1], fx[2], fy[2] = fx[2], fy[2], fx[1], fy[1]
     return area if first_finger(x, y, limits) >= 0 else 0.0
 
 

@@ -126,7 +126,10 @@ def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
 
 @pytest.mark.slow
 def test_a_second_attempt_comes_through_a_narrow_pass():
-    """Number 7 of these was knocked back at the pass before the hand was wide open, and wedged."""
+    """Number 3 of these was knocked back at the pass before the hand was wide open, and wedged.
+
+    The pass is narrow indeed: the hand is open by 6e-5 more than the object needs.
+    """
     physical = physical_case(read_case(CASES / "Z_twofold_multi.json"))
     cage, unit = physical.cage, physical.case.outline.diameter
     assert cage.sigma_max is not None
@@ -136,15 +139,17 @@ def test_a_second_attempt_comes_through_a_narrow_pass():
     starts = np.repeat(setup.target[None, :], 8, axis=0)
 
     def attacked_at(level: float, stream: int, retries: int) -> Attacks:
-        openings, rng = np.full(8, level / unit), np.random.default_rng([0, 4]).spawn(9)[stream]
+        openings, rng = np.full(8, level / unit), np.random.default_rng([0, 5]).spawn(9)[stream]
         pull = GuidedPull(retries=retries)
         driver = GuidedDriver(setup.scene, openings, setup.path, rng, pull)
         return attack(setup.scene, setup.model, starts, openings, driver, 2)
 
-    above = at(cage.sigma_max_upper, cage.sigma_0, 1)
+    above = 0.97 * cage.sigma_max_upper + 0.03 * at(cage.sigma_max_upper, cage.sigma_0, 1)
     once, again = attacked_at(above, 4, 0), attacked_at(above, 4, GuidedPull().retries)
-    assert once.ending.tolist() == 7 * [ESCAPED] + [HELD]
+    free = np.array([0, 1, 2, 4, 5, 6, 7])
+    assert once.ending[3] == HELD
+    assert (once.ending[free] == ESCAPED).all()
     assert again.escapes == 8
-    assert np.array_equal(once.end[:7], again.end[:7])  # what was never stuck is what it was
-    assert np.array_equal(once.steps[:7], again.steps[:7])
+    assert np.array_equal(once.end[free], again.end[free])  # what was never stuck is what it was
+    assert np.array_equal(once.steps[free], again.steps[free])
     assert attacked_at(at(cage.sigma_max, cage.sigma_0, -1), 3, GuidedPull().retries).escapes == 0

@@ -392,7 +392,7 @@ def test_a_point_is_allowed_where_the_features_can_push_through_it(family: str, 
         wanted = {f for f, _ in carriers(ring, p)}
         spots = dict(carriers(ring, p))
         told = set()
-        for k in range(len(features)):
+        for k in range(len(features.kind)):
             one = np.array([k, k, k])
             if features.allows(one, p):
                 kind = "edge" if features.kind[k] == EDGE else "vertex"
@@ -467,6 +467,8 @@ def meet_within(ring: Ring, three: frozenset[tuple[str, int]], contacts: Floats)
     away, or are parallel, the search does not look. On two edges their lines meet in that point.
     """
     edges = [e for kind, e in three if kind == "edge"]
+    if not edges:
+        return True
     if len(edges) != 1:
         side = ring.tangents[edges]
         return len(edges) == 3 or abs(side[0, 0] * side[1, 1] - side[0, 1] * side[1, 0]) > 1e-9

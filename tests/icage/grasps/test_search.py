@@ -97,7 +97,7 @@ def test_no_finger_touches_a_stretch_to_avoid(radius: float, stretch: tuple[floa
     met = 0
     for grasps, may in ((found, False), (free, True)):
         assert grasps.candidates
-        for grasp in grasps.candidates[:300]:
+        for grasp in grasps.candidates[:: max(1, len(grasps.candidates) // 300)]:
             gap = min(shapely.Point(p).distance(line) for p in grasp.contacts for line in lines)
             met += gap <= radius + 1e-9
             assert may or gap > radius
@@ -233,7 +233,7 @@ def test_no_random_grasp_is_better(radius: float) -> None:
 def test_a_search_that_is_larger_than_allowed_is_broken_off_and_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("icage.grasps.evaluator._SEARCH_LIMIT", 40)
+    monkeypatch.setattr("icage.grasps.evaluator._SEARCH_LIMIT", 8)
     bench = GraspEvaluator(KEY, 0.0, Wanted("cage", limits=ANY_HAND))
     bench.grasps(*bench.triples())
     assert bench.broken_off > 0
