@@ -5,6 +5,7 @@ The kernels release Python's lock, so threads do: nothing is started, copied or 
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -15,6 +16,9 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.findings import Findings
+
+_BATCH = 16
+"""Chunks between two looks at the cells: the same for any number of threads."""
 
 _CHUNK = 48
 """Candidates between two looks at the clock: some 10 to 100 ms of one core."""
@@ -44,7 +48,7 @@ class Crew:
         self._threads = ThreadPoolExecutor(max_workers=max(1, workers))
         self._progress = progress
         self._end = None if seconds is None else time.monotonic() + seconds
-        self.compared = 0
+        self.compared = self.tried = 0
         self.best: float | None = None
 
     def __enter__(self) -> Crew:
@@ -64,26 +68,35 @@ class Crew:
 
     def grasps(
         self, evaluator: GraspEvaluator, triples: IntArray, points: FloatArray, stage: str,
-        keep: list[Findings],
-    ) -> tuple[IntArray, Findings]:  # fmt: skip
-        """The cages among candidates, and the rows that they came from.
+        keep: list[Findings], most_cells: float = math.inf,
+    ) -> IntArray:  # fmt: skip
+        """Rows of the candidates that are cages; these go into ``keep`` as soon as they are there.
 
-        Each chunk is put into ``keep`` as soon as it is there, for whoever is interrupted.
+        No further candidates are looked at after ``most_cells`` cells; how many were is in
+        ``tried``.
         """
         chunks = [slice(k, k + _CHUNK) for k in range(0, len(triples), _CHUNK)]
         rows: list[IntArray] = []
-        found: list[Findings] = []
-
-        def work(chunk: slice) -> tuple[IntArray, Findings]:
-            return evaluator.rows_of(triples[chunk], points[chunk])
-
-        for chunk, (own, part) in zip(
-            chunks, self._told(work, chunks, stage, len(triples)), strict=True
-        ):
-            rows.append(own + chunk.start)
-            found.append(part)
-            keep.append(part)
-        return np.concatenate(rows) if rows else np.empty(0, np.int64), Findings.together(found)
+        cells = 0
+        self.tried = 0
+        for begin in range(0, len(chunks), _BATCH):
+            batch = chunks[begin : begin + _BATCH]
+            answers = self._threads.map(
+                evaluator.tried, [triples[c] for c in batch], [points[c] for c in batch]
+            )
+            for chunk, answer in zip(batch, answers, strict=True):
+                rows.append(answer.rows + chunk.start)
+                keep.append(answer.found)
+                cells += answer.cells
+                self._note(answer.found)
+                done = min(chunk.stop, len(triples))
+                self.compared += done - chunk.start
+                self.tried = done
+                self._progress(stage, done, len(triples), self.best)
+                self._look_at_the_clock()
+            if cells > most_cells:
+                break
+        return np.concatenate(rows) if rows else np.empty(0, np.int64)
 
     def climbs(
         self, work: Callable[[Given], Findings], given: list[Given], stage: str, steps: int,
@@ -100,18 +113,6 @@ class Crew:
         if len(found):
             top = float(found.score.max())
             self.best = top if self.best is None else max(self.best, top)
-
-    def _told(
-        self, work: Callable[[slice], tuple[IntArray, Findings]], chunks: list[slice], stage: str,
-        total: int,
-    ) -> Iterator[tuple[IntArray, Findings]]:  # fmt: skip
-        for chunk, answer in zip(chunks, self._threads.map(work, chunks), strict=True):
-            yield answer
-            done = min(chunk.stop, total)
-            self.compared += done - chunk.start
-            self._note(answer[1])
-            self._progress(stage, done, total, self.best)
-            self._look_at_the_clock()
 
     def _look_at_the_clock(self) -> None:
         """Nobody is served by an end before the first grasp."""

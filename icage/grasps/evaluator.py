@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from icage.grasps.features import (
 )
 from icage.grasps.findings import Findings
 from icage.grasps.kernels.climb import climb, tried_jobs
-from icage.grasps.kernels.evaluate import Sought, Verdict, evaluate
+from icage.grasps.kernels.evaluate import Evaluated, Sought, Verdict, evaluate
 from icage.grasps.kernels.hands import HandLimits as Limits
 from icage.grasps.kernels.shaping import shaped_points
 from icage.grasps.stretches import stretch
@@ -48,6 +49,14 @@ _TOUCHING = 1e-9
 
 _FURTHER = 12
 """Points of concurrency at which a triple is tried where it is looked at more closely."""
+
+
+class Tried(NamedTuple):
+    """What came of candidates: the rows of those that are cages, these, and the cells visited."""
+
+    rows: IntArray
+    found: Findings
+    cells: int
 
 
 class GraspEvaluator:
@@ -92,13 +101,14 @@ class GraspEvaluator:
         """
         x, y = np.ascontiguousarray(contacts[:, 0]), np.ascontiguousarray(contacts[:, 1])
         x, y = x.copy(), y.copy()
-        verdict, first, sigma_0, level = evaluate(
+        verdict, first, sigma_0, level, cells = evaluate(
             self._pieces, self._origin, self._ring, x, y, self.limits, self._sought
         )
-        found = self._kept(
-            np.array([verdict], np.int64), np.array([list(triple)], np.int64), np.zeros((1, 2)),
-            np.column_stack([x, y])[None], np.array([[sigma_0, level]]), np.array([first]),
+        one = Evaluated(
+            np.array([verdict]), np.column_stack([x, y])[None], np.array([[sigma_0, level]]),
+            np.array([first]), np.array([cells]),
         )  # fmt: skip
+        _, found = self._kept(one, np.array([list(triple)], np.int64), np.zeros((1, 2)))
         return found.candidates()[0] if len(found) else None
 
     def at(self, triple: IntArray, p: FloatArray) -> Candidate | None:
@@ -108,51 +118,42 @@ class GraspEvaluator:
 
     def grasps(self, triples: IntArray, points: FloatArray) -> Findings:
         """Those of some triples (n, 3) with their points of concurrency (n, 2) that are cages."""
-        return self.rows_of(triples, points)[1]
+        return self.tried(triples, points).found
 
-    def rows_of(self, triples: IntArray, points: FloatArray) -> tuple[IntArray, Findings]:
-        """The same, and the rows that they came from."""
-        found, used = tried_jobs(
+    def tried(self, triples: IntArray, points: FloatArray) -> Tried:
+        """The same, the rows that they came from, and the cells that all searches visited."""
+        every, used = tried_jobs(
             self._pieces, self._origin, self._ring, self.features, self.beside, triples, points,
             self.limits, self._sought,
         )  # fmt: skip
-        self.broken_off += int((found.verdict == Verdict.BROKEN_OFF).sum())
-        return self._kept_rows(
-            found.verdict, used, points, found.contacts, found.levels, found.first
-        )
+        self.broken_off += int((every.verdict == Verdict.BROKEN_OFF).sum())
+        rows, found = self._kept(every, used, points)
+        return Tried(rows, found, int(every.cells.sum()))
 
     def climbed(self, triple: IntArray, start: FloatArray, stride: float, steps: int) -> Findings:
         """The best of so many candidates on the way up from a point (2,), in one row or none.
 
         ``stride`` [unit] is the size of the first simplex.
         """
-        found, used, point, _ = climb(
+        best, used, point, _ = climb(
             self._pieces, self._origin, self._ring, self.features, self.beside, self.limits,
             self._sought, triple, start, stride, steps,
         )  # fmt: skip
-        return self._kept_rows(
-            found.verdict, used, point, found.contacts, found.levels, found.first
-        )[1]
+        return self._kept(best, used, point)[1]
 
     def _kept(
-        self, verdict: IntArray, triples: IntArray, points: FloatArray, contacts: FloatArray,
-        levels: FloatArray, first: IntArray,
-    ) -> Findings:  # fmt: skip
-        return self._kept_rows(verdict, triples, points, contacts, levels, first)[1]
-
-    def _kept_rows(
-        self, verdict: IntArray, triples: IntArray, points: FloatArray, contacts: FloatArray,
-        levels: FloatArray, first: IntArray,
-    ) -> tuple[IntArray, Findings]:  # fmt: skip
-        """Cages of hands that are wanted, read from their finger 1."""
-        rows = np.flatnonzero(verdict == Verdict.CAGE)
-        turn = (first[rows, None] + np.arange(3)) % 3
-        own = np.take_along_axis(contacts[rows], turn[:, :, None], axis=1)
-        before = contacts[rows]
+        self, every: Evaluated, triples: IntArray, points: FloatArray
+    ) -> tuple[IntArray, Findings]:
+        """Cages of hands that are wanted, read from their finger 1, and their rows."""
+        rows = np.flatnonzero(every.verdict == Verdict.CAGE)
+        turn = (every.first[rows, None] + np.arange(3)) % 3
+        before = every.contacts[rows]
+        own = np.take_along_axis(before, turn[:, :, None], axis=1)
         longer = _side(own) / np.maximum(_side(before), 1e-300)
+        levels = every.levels[rows]
         found = Findings(
             np.take_along_axis(triples[rows], turn, axis=1), points[rows], own,
-            levels[rows, 0] * longer, levels[rows, 1] * longer,
+            levels[:, 0] * longer, levels[:, 1] * longer, every.cells[rows],
         )  # fmt: skip
         deep = found.level - found.sigma_0 >= self.wanted.tolerance
         return rows[deep], found.of(np.flatnonzero(deep))

@@ -30,6 +30,8 @@ class Findings:
         (n, 3, 2) [unit], counterclockwise from finger 1.
     sigma_0, level:
         (n,) [unit] as in ``Candidate``.
+    cells:
+        (n,) that the search from each has visited: what another one like it costs.
     """
 
     triples: IntArray
@@ -37,6 +39,7 @@ class Findings:
     contacts: FloatArray
     sigma_0: FloatArray
     level: FloatArray
+    cells: IntArray
 
     def __len__(self) -> int:
         return len(self.triples)
@@ -51,7 +54,7 @@ class Findings:
         """Nothing yet."""
         return cls(
             np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty((0, 3, 2)), np.empty(0),
-            np.empty(0),
+            np.empty(0), np.empty(0, np.int64),
         )  # fmt: skip
 
     @classmethod
@@ -65,13 +68,14 @@ class Findings:
             np.concatenate([part.contacts for part in parts]),
             np.concatenate([part.sigma_0 for part in parts]),
             np.concatenate([part.level for part in parts]),
+            np.concatenate([part.cells for part in parts]),
         )
 
     def of(self, rows: IntArray) -> Findings:
         """Some of them, in a given order."""
         return Findings(
             self.triples[rows], self.points[rows], self.contacts[rows], self.sigma_0[rows],
-            self.level[rows],
+            self.level[rows], self.cells[rows],
         )  # fmt: skip
 
     def best_first(self) -> Findings:

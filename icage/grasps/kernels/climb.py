@@ -38,7 +38,7 @@ def tried(pieces, origin, ring, features, beside, limits, sought, triple, px, py
         f = taken_over(features, beside, triple[k], px, py)
         own[k] = f
         if not is_in_set(features.planes, f, px, py):
-            return 0, 0, 0.0, 0.0
+            return 0, 0, 0.0, 0.0, 0
         at = contact_at(features.kind[f], features.point[f], features.normal[f], px, py)
         x[k], y[k] = at.x, at.y
     return evaluate(pieces, origin, ring, x, y, limits, sought)
@@ -52,17 +52,18 @@ def tried_jobs(pieces, origin, ring, features, beside, triples, points, limits, 
     contacts = np.zeros((n, 3, 2))
     levels = np.zeros((n, 2))
     first = np.zeros(n, np.int64)
+    cells = np.zeros(n, np.int64)
     used = triples.copy()
     x = np.empty(3)
     y = np.empty(3)
     for row in range(n):
-        verdict[row], first[row], levels[row, 0], levels[row, 1] = tried(
+        verdict[row], first[row], levels[row, 0], levels[row, 1], cells[row] = tried(
             pieces, origin, ring, features, beside, limits, sought, triples[row],
             points[row, 0], points[row, 1], used[row], x, y,
         )  # fmt: skip
         for k in range(3):
             contacts[row, k, 0], contacts[row, k, 1] = x[k], y[k]
-    return Evaluated(verdict, contacts, levels, first), used
+    return Evaluated(verdict, contacts, levels, first, cells), used
 
 
 @compiled
@@ -75,6 +76,7 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
     contacts = np.zeros((1, 3, 2))
     levels = np.zeros((1, 2))
     first = np.zeros(1, np.int64)
+    cells = np.zeros(1, np.int64)
     used = np.empty((1, 3), np.int64)
     used[0] = triple
     point = np.empty((1, 2))
@@ -118,7 +120,7 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
         else:
             for k in range(2):
                 trial[k] = 0.5 * (at[0, k] + at[stage - 6, k])
-        verdict_here, first_here, sigma_0, level = tried(
+        verdict_here, first_here, sigma_0, level, visited = tried(
             pieces, origin, ring, features, beside, limits, sought, used[0], trial[0], trial[1],
             own, x, y,
         )  # fmt: skip
@@ -128,6 +130,7 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
             top = score
             verdict[0], first[0] = verdict_here, first_here
             levels[0, 0], levels[0, 1] = sigma_0, level
+            cells[0] = visited
             for k in range(3):
                 contacts[0, k, 0], contacts[0, k, 1] = x[k], y[k]
                 used[0, k] = own[k]
@@ -162,4 +165,4 @@ def climb(pieces, origin, ring, features, beside, limits, sought, triple, start,
         else:
             at[stage - 6], value[stage - 6] = trial, score
             stage = 8 if stage == 7 else 3
-    return Evaluated(verdict, contacts, levels, first), used, point, spent
+    return Evaluated(verdict, contacts, levels, first, cells), used, point, spent

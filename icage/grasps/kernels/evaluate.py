@@ -84,16 +84,17 @@ class Sought(NamedTuple):
 
 
 class Evaluated(NamedTuple):
-    """One row per candidate: verdict (n,), contacts (n, 3, 2), and levels (n, 2).
+    """One row per candidate: verdict (n,), contacts (n, 3, 2), levels (n, 2) and cells (n,).
 
     Levels are sigma_0 and the level that is ranked, between fingers 1 and 2 as they come; finger 1
-    is contact ``first`` (n,).
+    is contact ``first`` (n,). ``cells`` are those that its search has visited.
     """
 
     verdict: np.ndarray
     contacts: np.ndarray
     levels: np.ndarray
     first: np.ndarray
+    cells: np.ndarray
 
 
 @compiled
@@ -125,13 +126,13 @@ def _level(found, sigma_0, first, diameter):
 
 @compiled
 def evaluate(pieces, origin, ring, x, y, limits, sought):
-    """Verdict, first finger, sigma_0 and level; x, y (3,) become the contacts of the minimum."""
+    """Verdict, first finger, sigma_0, level, cells; x, y (3,) become those of the minimum."""
     first = first_finger(x, y, limits)
     if first < 0:
-        return OUTSIDE, 0, 0.0, 0.0
+        return OUTSIDE, 0, 0.0, 0.0, 0
     for k in range(3):
         if touches(x[k], y[k], sought.avoided, sought.reach):
-            return OUTSIDE, 0, 0.0, 0.0
+            return OUTSIDE, 0, 0.0, 0.0, 0
     wx, wy = x[1] - x[0], y[1] - y[0]
     ux, uy = x[2] - x[0], y[2] - y[0]
     norm = wx * wx + wy * wy
@@ -144,7 +145,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
     held = nearest_minimum(pieces, z, wanted, TARGET_SHIFT, TARGET_TURN, cap, worst, MOST_CELLS)
     if held.row < 0 or held.plateau.long or held.total > MOST_CELLS:
-        return NO_MINIMUM, 0, 0.0, 0.0
+        return NO_MINIMUM, 0, 0.0, 0.0, 0
     near = held.near[held.row]
     own = np.empty((3, 2))
     for k in range(3):
@@ -153,7 +154,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     # where two fingers hold already, the best grasps of three would be ones with a finger in the
     # air beside them
     if depth_inside(ring, own, 0.0).min() < -FREE_FINGER * pieces.diameter:
-        return NO_MINIMUM, 0, 0.0, 0.0
+        return NO_MINIMUM, 0, 0.0, 0.0, 0
     for k in range(3):
         x[k], y[k] = own[k, 0] + origin[0], own[k, 1] + origin[1]
     sigma_0 = near[NEAR_SIGMA]
@@ -164,12 +165,12 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
         pieces, z, held.cells[held.row], sigma_0, cap, worst, most, sought.cell_limit, enough
     )
     if found.outcome == GAVE_UP:
-        return BROKEN_OFF, first, sigma_0, 0.0
+        return BROKEN_OFF, first, sigma_0, 0.0, len(found.nodes)
     level = _level(found, sigma_0, sought.first, pieces.diameter)
     if level == np.inf:
         cells = np.ascontiguousarray(found.nodes[:, :3])
         level = largest_in(pieces, z, cells, _INSIDE * pieces.diameter, most)
     level = min(level, most)
     if level / sigma_0 - 1.0 < NOT_A_CAGE:
-        return NO_CAGE, first, sigma_0, level
-    return CAGE, first, sigma_0, level
+        return NO_CAGE, first, sigma_0, level, len(found.nodes)
+    return CAGE, first, sigma_0, level, len(found.nodes)
