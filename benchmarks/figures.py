@@ -126,7 +126,15 @@ BENCHMARKS: dict[str, Benchmark] = {
         ),
         quick=("--trials", "100", "--passes", "1"),
     ),
-    "grasps": Benchmark("Search for grasps", ()),
+    "grasps": Benchmark(
+        "Search for grasps, ten each",
+        tuple(
+            _per_yardstick(f"{name}, {fingers}", f"rows > {name}, {fingers} > seconds", 0.5)
+            for fingers in ("points", "discs")
+            for name in ("claw_hammer", "hedge_shears", "pliers", "star_120", "blob_200")
+        ),
+        quick=("--only", "claw_hammer"),
+    ),
     "two_engines": Benchmark(
         "Both methods of the planner",
         tuple(

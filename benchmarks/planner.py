@@ -10,8 +10,7 @@ Processor seconds. Every figure is also given as a ratio to a yardstick measured
 - ``--round``: one plan by either method on round objects, each in a process of its own with its
   peak memory.
 
-The committed baseline holds, for every figure, the value, whether less is better, and the factor
-within which another run counts as the same.
+``python -m benchmarks --only planner --compare`` compares with the committed baseline.
 """
 
 from __future__ import annotations
@@ -41,7 +40,6 @@ from icage.kernels.compiled import machine_code_at_once
 from icage.outline import Outline
 from icage.planner import MethodName, plan
 
-BASELINE = Path(__file__).with_name("planner_baseline.json")
 QUERIES = 100_000
 SIZES = (20, 40, 80, 150, 300, 600)
 """Vertices of the stars of ``growth``."""
@@ -62,8 +60,6 @@ METHODS: tuple[MethodName, ...] = ("cells", "contact-space")
 ONE_METHOD = ("regular_1000", "gear_240")
 """Round objects on which the contact space is not asked: minutes."""
 
-SAME = 1.5
-"""[1] Another run within this factor of the baseline, each over its own yardstick, is as fast."""
 _SHARE = 20
 """Features that may come first in a triple of those from which targets are drawn."""
 
@@ -258,13 +254,8 @@ def rounds() -> dict[str, float]:
     return figures
 
 
-def tolerance_of(name: str) -> float:
-    """[1] The factor, or for an exponent the difference, within which a figure is the same."""
-    return 0.3 if name.endswith("exponent") else SAME
-
-
 def main() -> int:
-    """Measure (once before, to warm up), print, compare with the baseline."""
+    """Measure (once before, to warm up) and print; ``python -m benchmarks`` compares."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -272,7 +263,6 @@ def main() -> int:
     parser.add_argument("--growth", action="store_true", help="and plans of 20 to 600 vertices")
     parser.add_argument("--round", action="store_true", help="and round objects")
     parser.add_argument("--one-round", nargs=2, metavar=("OBJECT", "METHOD"))
-    parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
     machine_code_at_once()
     if options.one_round:
@@ -286,26 +276,10 @@ def main() -> int:
         figures |= growth()
     if options.round:
         figures |= rounds()
-    base = json.loads(BASELINE.read_text()) if BASELINE.exists() else {}
-    print(f"{'figure':<46} {'value':>12} {'/ yardstick':>12} {'baseline':>12}")
+    print(f"{'figure':<46} {'value':>12} {'/ yardstick':>12}")
     for name, value in figures.items():
-        absolute = name.endswith(("MB", "exponent"))
-        unit = 1.0 if absolute else figures["yardstick"]
-        was, verdict = math.nan, ""
-        if name in base:
-            was = base[name]["value"] / (1.0 if absolute else base["yardstick"]["value"])
-            within = base[name]["tolerance"]
-            worse = (
-                value - was > within if name.endswith("exponent") else value / unit > was * within
-            )
-            verdict = "slower" if worse else ""
-        print(f"{name:<46} {value:12.6g} {value / unit:12.4g} {was:12.4g} {verdict}")
-    rows = {
-        name: {"value": value, "better": "less", "tolerance": tolerance_of(name)}
-        for name, value in figures.items()
-    }
-    if options.update_baseline:
-        BASELINE.write_text(json.dumps(base | rows, indent=1) + "\n")
+        unit = 1.0 if name.endswith(("MB", "exponent")) else figures["yardstick"]
+        print(f"{name:<46} {value:12.6g} {value / unit:12.4g}")
     if options.json is not None:
         options.json.write_text(json.dumps(figures, indent=1) + "\n")
     return 0
