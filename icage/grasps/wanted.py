@@ -61,8 +61,8 @@ class HandLimits:
         a_number(self.least_angle, "least_angle")
         if not 0.0 <= self.least_angle < math.pi / 3.0:
             raise InputError(
-                f"least_angle = {self.least_angle:g} rad; a triangle has an angle of at most 60 "
-                "degrees, and less than that is needed"
+                f"least_angle = {self.least_angle:g} rad is {math.degrees(self.least_angle):g} "
+                "degrees; a triangle has an angle of at most 60, and less than that is needed"
             )
         if self.least_gap is not None:
             a_number(self.least_gap, "least_gap")
