@@ -313,7 +313,7 @@ class _Search:
 
             # a simplex may miss a ridge that its mirror image finds: the first are sent out twice
             ways = [(row, 1.0) for row in range(len(seeds))]
-            ways += [(row, -1.0) for row in range(min(1 + len(seeds) // 2, most // 3))]
+            ways += [(row, -1.0) for row in range(min((len(seeds) + 1) // 2, most // 3))]
 
             def climbed(
                 way: tuple[int, float], seeds: Findings = seeds, stride: float = stride,
