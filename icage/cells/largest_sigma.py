@@ -11,10 +11,6 @@ import numpy as np
 from icage.cells.free_space import Search
 from icage.cells.kernels.largest import largest_in
 
-_INSIDE = 1e-9
-"""[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
-the angle between two edges."""
-
 
 def largest_sigma_in(found: Search) -> float:
     """Largest |w| over all visited cells, [unit]."""
@@ -29,6 +25,5 @@ def opens_to(found: Search, level: float) -> bool:
 def _largest(found: Search, enough: float) -> float:
     """The largest sigma, or any that is ``enough``."""
     free_space = found.free_space
-    give = _INSIDE * free_space.pieces.diameter
     cells = np.ascontiguousarray(found.cells)
-    return float(largest_in(free_space.pieces, free_space.z, cells, give, enough))
+    return float(largest_in(free_space.pieces, free_space.z, cells, enough))

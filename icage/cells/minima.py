@@ -23,12 +23,11 @@ from icage.cells.kernels.columns import (
     StartSide,
 )
 from icage.cells.kernels.facet import middles_on_facets
-from icage.cells.kernels.slide import which_slide
 from icage.cells.kernels.tree import births
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers, free_fingers_of
 from icage.geometry.way_out import corners_before_pinch
-from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU, SAME_POINT, SLIDE_GIVE
+from icage.tolerance import DEPTH_CUT, LEVEL
 
 
 class Joining(NamedTuple):
@@ -127,18 +126,12 @@ def _grasps(
         pieces, z, nodes, born.where[:, BORN_FINGER], born.where[:, BORN_SLOT],
         born.value[:, BIRTH_WX:],
     )  # fmt: skip
-    size = pieces.diameter
-    # what ``plateau_through`` asks first
-    slide = which_slide(
-        pieces, z, hands, sigma, free_space.cap, free_space.worst,
-        SAME_POINT * size, PLATEAU * size, SLIDE_GIVE * size, DEPTH_CUT * size,
-    )  # fmt: skip
     at = [Configuration(complex(*m[:2]), complex(*m[2:])) for m in hands.tolist()]
     contacts = [free_space.contacts(here) for here in at]
     touching = free_fingers_of(free_space.outline, np.array(contacts))
     grasps: list[GraspMinimum] = []
     for k, (here, low, (_, level)) in enumerate(zip(at, sigma.tolist(), joined, strict=True)):
-        ends = plateau_through(free_space, here, low) if slide[k] else None
+        ends = plateau_through(free_space, here, low)
         plateau = _plateau_contacts(free_space, ends)
         grasps.append(GraspMinimum(-1, False, low, contacts[k], plateau, touching[k], level))
     return grasps

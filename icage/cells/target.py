@@ -70,15 +70,14 @@ def find_target(
     if found.plateau.long:
         best = replace(best, plateau=_ends(found.plateau, best.at))
     around = _search_to_the_cut(free_space, best)
-    others = [_target(found, row) for row in range(len(found.near))]
     if best.plateau is None and not _has_depth(around, best.sigma_0):
-        best = _nearest_deep(free_space, others)
+        best = _nearest_deep(free_space, _all_of(found))
         if best is None:
             return None
         around = _search_to_the_cut(free_space, best)
     if not _isolated(around, best.sigma_0):
         return best
-    return _not_isolated(free_space, others, around) or best
+    return _not_isolated(free_space, _all_of(found), around) or best
 
 
 def _search_to_the_cut(free_space: FreeSpace, target: Target) -> Search:
@@ -100,6 +99,11 @@ def _nearest_deep(free_space: FreeSpace, others: list[Target]) -> Target | None:
         if ends is not None or _has_depth(around, target.sigma_0):
             best = replace(target, plateau=ends)
     return best
+
+
+def _all_of(found: minimum.Nearest) -> list[Target]:
+    """The least points of all cells near the contacts, by sigma."""
+    return [_target(found, row) for row in range(len(found.near))]
 
 
 def _target(found: minimum.Nearest, row: int) -> Target:

@@ -57,13 +57,11 @@ class Crew:
     def __exit__(self, *_: object) -> None:
         self._threads.shutdown(cancel_futures=True)
 
-    def map(
-        self, work: Callable[[Given], Done], given: list[Given], stage: str, weight: int = 1
-    ) -> Iterator[Done]:
-        """What came of each, in order; told as ``weight`` steps each."""
+    def map(self, work: Callable[[Given], Done], given: list[Given], stage: str) -> Iterator[Done]:
+        """What came of each, in order."""
         for done, answer in enumerate(self._threads.map(work, given), 1):
             yield answer
-            self._progress(stage, done * weight, len(given) * weight, self.best)
+            self._progress(stage, done, len(given), self.best)
             self._look_at_the_clock()
 
     def grasps(
@@ -99,15 +97,15 @@ class Crew:
         return np.concatenate(rows) if rows else np.empty(0, np.int64)
 
     def climbs(
-        self, work: Callable[[Given], Findings], given: list[Given], stage: str, steps: int,
+        self, work: Callable[[Given], tuple[Findings, int]], given: list[Given], stage: str,
         keep: list[Findings],
     ) -> Iterator[Findings]:  # fmt: skip
-        """What came of each climb of so many steps, in order; kept as soon as it is there."""
-        for answer in self.map(work, given, stage, steps):
-            self.compared += steps
-            self._note(answer)
-            keep.append(answer)
-            yield answer
+        """What came of each climb, in order; kept as soon as it is there."""
+        for found, compared in self.map(work, given, stage):
+            self.compared += compared
+            self._note(found)
+            keep.append(found)
+            yield found
 
     def _note(self, found: Findings) -> None:
         if len(found):

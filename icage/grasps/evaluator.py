@@ -47,9 +47,6 @@ _LEAST = 1e-3
 _TOUCHING = 1e-9
 """[diameter] A finger this much further off than its radius still touches."""
 
-_FURTHER = 12
-"""Points of concurrency at which a triple is tried where it is looked at more closely."""
-
 
 class Tried(NamedTuple):
     """What came of candidates: the rows of those that are cages, these, and the cells visited."""
@@ -130,16 +127,19 @@ class GraspEvaluator:
         rows, found = self._kept(every, used, points)
         return Tried(rows, found, int(every.cells.sum()))
 
-    def climbed(self, triple: IntArray, start: FloatArray, stride: float, steps: int) -> Findings:
-        """The best of so many candidates on the way up from a point (2,), in one row or none.
+    def climbed(
+        self, triple: IntArray, start: FloatArray, stride: float, steps: int
+    ) -> tuple[Findings, int]:
+        """The best of at most so many candidates on the way up from a point (2,), in one row or
+        none, and how many there were.
 
         ``stride`` [unit] is the size of the first simplex.
         """
-        best, used, point, _ = climb(
+        best, used, point, spent = climb(
             self._pieces, self._origin, self._ring, self.features, self.beside, self.limits,
             self._sought, triple, start, stride, steps,
         )  # fmt: skip
-        return self._kept(best, used, point)[1]
+        return self._kept(best, used, point)[1], int(spent)
 
     def _kept(
         self, every: Evaluated, triples: IntArray, points: FloatArray
@@ -169,7 +169,7 @@ class GraspEvaluator:
         use = corners >= self.wanted.corners
         return triples[use], points[use]
 
-    def further(self, triple: IntArray, most: int = _FURTHER) -> tuple[IntArray, FloatArray]:
+    def further(self, triple: IntArray, most: int) -> tuple[IntArray, FloatArray]:
         """A triple at a few points of concurrency all over its set."""
         any_shape = self.limits._replace(within=math.inf)
         triples, points = further_points(self.features, self.outline, any_shape, triple)

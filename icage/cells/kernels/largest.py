@@ -9,6 +9,10 @@ import numpy as np
 
 from icage.kernels.compiled import compiled
 
+_INSIDE = 1e-9
+"""[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
+the angle between two edges."""
+
 
 @compiled
 def _holds(pieces, k, x, y, give):
@@ -78,8 +82,9 @@ def _one_at_a_corner(pieces, z, cell, i, give, best):
 
 
 @compiled
-def largest_in(pieces, z, cells, give, enough):
+def largest_in(pieces, z, cells, enough):
     """Largest sigma over cells (k, fingers); any value of at least ``enough`` ends the search."""
+    give = _INSIDE * pieces.diameter
     best = 0.0
     for n in range(len(cells)):
         for i in range(cells.shape[1]):

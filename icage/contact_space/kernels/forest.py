@@ -15,6 +15,7 @@ from icage.contact_space.kernels.columns import (
     MERGE_YOUNGER,
 )
 from icage.kernels.compiled import compiled
+from icage.kernels.union_find import root_of
 
 
 class Persistence(NamedTuple):
@@ -26,15 +27,6 @@ class Persistence(NamedTuple):
     merges: np.ndarray
     levels: np.ndarray
     minimum: np.ndarray
-
-
-@compiled
-def root_of(parent, node):
-    """Root of a node, with path halving."""
-    while parent[node] != node:
-        parent[node] = parent[parent[node]]
-        node = parent[node]
-    return node
 
 
 @compiled

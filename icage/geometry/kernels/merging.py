@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.kernels.compiled import compiled
+from icage.kernels.union_find import root_of
 
 FILTER = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
 """[1] Relative error bound of the float orientation determinant. [Shewchuk1997, ccwerrboundA]"""
@@ -45,14 +46,6 @@ def _corner(x, y, before, at, after):
 
 
 @compiled
-def _find(parent, piece):
-    while parent[piece] != piece:
-        parent[piece] = parent[parent[piece]]
-        piece = parent[piece]
-    return piece
-
-
-@compiled
 def merge_rings(x, y, origin, twin, order, max_edges):
     """Rings of vertices of the merged pieces, each from its smallest one, one after the other.
 
@@ -73,7 +66,7 @@ def merge_rings(x, y, origin, twin, order, max_edges):
     alive = np.ones(count, np.bool_)
     for edge in order:
         other = twin[edge]
-        mine, yours = _find(parent, piece[edge]), _find(parent, piece[other])
+        mine, yours = root_of(parent, piece[edge]), root_of(parent, piece[other])
         total = edges[mine] + edges[yours] - 2
         if mine == yours or total > max_edges:
             continue

@@ -34,15 +34,12 @@ from icage.tolerance import (
     FREE_FINGER,
     LEVEL,
     NOT_A_CAGE,
+    PASS_ERROR,
     TARGET_SHIFT,
     TARGET_TURN,
 )
 
 GAVE_UP, _, _, MET = Ending
-
-
-_INSIDE = 1e-9
-"""[diameter] A point this far outside a piece is in it, where the largest sigma is sought."""
 
 
 class Verdict(IntEnum):
@@ -141,7 +138,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     z[2, 0], z[2, 1] = (ux * wx + uy * wy) / norm, (uy * wx - ux * wy) / norm
     shortest = min(1.0, np.hypot(z[2, 0], z[2, 1]), np.hypot(z[2, 0] - 1.0, z[2, 1]))
     cap = pieces.diameter / shortest
-    worst = 1e-12 * pieces.diameter
+    worst = PASS_ERROR * pieces.diameter
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
     held = nearest_minimum(pieces, z, wanted, TARGET_SHIFT, TARGET_TURN, cap, worst, MOST_CELLS)
     if held.row < 0 or held.plateau.long or held.total > MOST_CELLS:
@@ -169,7 +166,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     level = _level(found, sigma_0, sought.first, pieces.diameter)
     if level == np.inf:
         cells = np.ascontiguousarray(found.nodes[:, :3])
-        level = largest_in(pieces, z, cells, _INSIDE * pieces.diameter, most)
+        level = largest_in(pieces, z, cells, most)
     level = min(level, most)
     if level / sigma_0 - 1.0 < NOT_A_CAGE:
         return NO_CAGE, first, sigma_0, level, len(found.nodes)

@@ -12,7 +12,7 @@ import shapely.ops
 
 from icage import Case, HandLimits, InputError, Outline, plan
 from icage.errors import GraspError
-from icage.grasps import search as search_module
+from icage.grasps import stages
 from icage.grasps.crew import Crew
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.findings import apart, groups
@@ -240,7 +240,7 @@ def test_a_search_that_is_larger_than_allowed_is_broken_off_and_told(
 
 
 def test_triples_left_out_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search_module, "_MOST_TRIPLES", 10)
+    monkeypatch.setattr(stages, "_MOST_TRIPLES", 10)
     found = ranked_grasps(KEY, rng=draws())
     assert found.triples_left_out == found.triples - 10 > 0
 
