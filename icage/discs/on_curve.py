@@ -18,18 +18,18 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, not_a_cage
-from icage.discs.brackets import plan_by_resolutions
+from icage.discs.brackets import local_cage_on, plan_by_resolutions
 from icage.discs.critical import Critical, CriticalHands
 from icage.discs.curve import TrueCurve
 from icage.discs.hidden import hidden_minima
 from icage.discs.offsets import check_disc_contacts, directions_on_arcs, offsets
-from icage.discs.true_levels import REACH, TrueLevels, true_levels
+from icage.discs.true_levels import REACH, SAME, TrueLevels, true_levels
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
 from icage.method import LocalCage, Method
 from icage.outline import Outline
-from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
 SEGMENTS = (8, 24, 64)
 """Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
@@ -44,9 +44,6 @@ _THROUGH = 1e-6
 _TIGHT = 1e-6
 """[1] Where a polygon's level is lower by more (relative) than that of its puncture on the true
 curve, another puncture may lie between, unless polygon after polygon leads to the same levels."""
-
-_SAME = 1e-7
-"""[diameter] Two minima whose fingers are this near are one."""
 
 _INSIDE = 1e-9
 """[1] A solved level may be this little (relative) outside its bracket: rounding."""
@@ -232,11 +229,9 @@ class _Polygons:
         )
 
     def _local_cage(self, polygon: Outline) -> LocalCage | None:
-        # on chords a contact of an arc may rest anywhere on its own chord
         arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
-        chord = 2.0 * arc * 0.5 * np.pi / self.segments / polygon.diameter
-        reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-        return self.method.local_cage(polygon, self.critical.hand, self.true, reach, turn)
+        hand = self.critical.hand
+        return local_cage_on(polygon, hand, self.true, self.segments, arc, self.method)
 
     def _outer_polygon(self, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
@@ -263,7 +258,7 @@ class _Polygons:
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
         wanted = [self.true, *(p.contacts for p in ends)]
         reach = REACH * self.curve.sagitta(self.segments)
-        near = _SAME * self.critical.size
+        near = SAME * self.critical.size
         for one in hidden_minima(self.critical, found.cage, reach) if hidden else []:
             if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):
                 wanted.append(one.contacts)

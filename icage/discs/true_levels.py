@@ -18,7 +18,7 @@ from icage.cage import Cage, GraspMinimum, Puncture
 from icage.discs.critical import Critical, CriticalHands
 from icage.tolerance import DEPTH_CUT, DEPTH_ROUGH, LEVEL
 
-_SAME = 1e-7
+SAME = 1e-7
 """[diameter] Two solved minima whose fingers are this near are one."""
 
 _FAR = 0.05
@@ -140,7 +140,7 @@ class _Solving:
         elif found.level == 0 or grasp.plateau is None:
             for place, other in enumerate(self._grasps):
                 off = float(np.abs(other.contacts - found.contacts).max())
-                if off <= _SAME * self._critical.size:
+                if off <= SAME * self._critical.size:
                     self._at[grasp.id] = place
                     return
             grasp = replace(
