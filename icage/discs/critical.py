@@ -65,7 +65,6 @@ class Critical:
 
     contacts: FloatArray
     sigma: float
-    features: tuple[Feature, ...]
     descending: int
     level: int
 
@@ -296,7 +295,7 @@ class CriticalHands:
             return None  # neither a minimum nor a puncture, to second order
         contacts = self._features.as_contacts(v)
         sigma = float(np.hypot(*(contacts[1] - contacts[0])))
-        return Critical(contacts, sigma, tuple(features), down, level)
+        return Critical(contacts, sigma, down, level)
 
     def _is_blocked(self, v: FloatArray, way: FloatArray) -> bool:
         """Whether a feature that is touched, pushing or not, is in the way on one side or other."""
