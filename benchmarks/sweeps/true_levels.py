@@ -20,7 +20,7 @@ import numpy as np
 
 from icage.cage import Cage
 from icage.cells.method import CELLS, CellsLocalCage
-from icage.discs.critical import CurveFeatures
+from icage.discs.critical import CriticalHands
 from icage.discs.curve import TrueCurve
 from icage.errors import GraspError
 from icage.outline import Outline
@@ -46,7 +46,7 @@ def polygons(cage: Cage, curve: TrueCurve) -> list[CellsLocalCage | None]:
 
 def missed(cage: Cage, curve: TrueCurve, found: list[CellsLocalCage | None]) -> int:
     """Minima joined before sigma_first that do not end in the target on the true curve."""
-    features = CurveFeatures(cage.outline, curve.radius, cage.hand)
+    critical = CriticalHands(cage.outline, curve.radius, cage.hand)
     reach = 2.0 * curve.sagitta(SEGMENTS)
     first = np.inf if cage.sigma_first is None else cage.sigma_first
     count = 0
@@ -56,7 +56,7 @@ def missed(cage: Cage, curve: TrueCurve, found: list[CellsLocalCage | None]) -> 
         for grasp in local_cage.cage(cage.contacts, cage.outline, curve.radius).grasps:
             if grasp.target or grasp.joined_at >= first * (1.0 - 1e-5):
                 continue
-            end = features.minimum(grasp.contacts, reach) or features.below(grasp.contacts, reach)
+            end = critical.minimum(grasp.contacts, reach) or critical.below(grasp.contacts, reach)
             far = np.inf if end is None else float(np.abs(end.contacts - cage.contacts).max())
             count += far > 1e-7 * cage.outline.diameter
     return count

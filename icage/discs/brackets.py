@@ -4,7 +4,7 @@ sigma_max grows with the obstacle: chords give a lower bound, tangents an upper 
 refined until they agree. sigma_first does not (a larger obstacle can make a minimum or destroy
 one), so no polygon bounds it: the smallest value met is the one to trust. [docs/theory.md, Sec. 4]
 
-An engine that misses connections (``ContactSpace(tunnels=False)``, for teaching) misses others on
+A method that misses connections (``ContactSpace(tunnels=False)``, for teaching) misses others on
 the next polygon, so that its levels need not grow with the obstacle. Where they do not, the two
 that should be the bracket are reported smaller first; both may be too high.
 """
@@ -17,7 +17,7 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture, not_a_cage
-from icage.discs.offsets import Offsets, directions_on_arcs, offsets
+from icage.discs.offsets import directions_on_arcs, offsets
 from icage.discs.true_curve import refine
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
@@ -50,9 +50,17 @@ class ArcLocalCage:
     segments: int
     inner: bool
     local_cage: LocalCage
-    sigma_max: float
-    sigma_first: float
     sagitta: float
+
+    @property
+    def sigma_max(self) -> float:
+        """Escape level on this polygon, [unit]; inf if there is none."""
+        return self.local_cage.sigma_max
+
+    @property
+    def sigma_first(self) -> float:
+        """First level on this polygon, [unit]; the escape level if nothing comes before it."""
+        return self.local_cage.sigma_first
 
 
 def plan_by_resolutions(
@@ -106,12 +114,11 @@ def _local_cages(
             break
         grown = offsets(outline, radius, segments, through)
         closed = grown.closed_pockets
-        for inner in (True, False):
-            local_cage = _local_cage(
-                grown, hand, true, segments, inner, radius if through else 0.0, method
-            )
-            if local_cage is not None:
-                local_cages.append(local_cage)
+        arc = radius if through else 0.0
+        for inner, polygon in ((True, grown.inner), (False, grown.outer)):
+            found = local_cage_on(polygon, hand, true, segments, arc, method)
+            if found is not None:
+                local_cages.append(ArcLocalCage(segments, inner, found, grown.sagitta))
         if not local_cages:
             break
     return local_cages, closed
@@ -123,22 +130,17 @@ def _narrow(local_cages: list[ArcLocalCage]) -> bool:
     return low > 0.0 and (low == high or high / low - 1.0 < SIGMA_MAX_GAP)
 
 
-def _local_cage(
-    grown: Offsets, hand: HandShape, true: FloatArray, segments: int, inner: bool, arc: float,
-    method: Method,
-) -> ArcLocalCage | None:  # fmt: skip
-    """The search on one polygon; ``arc`` is the radius of an arc that carries a contact, or 0."""
-    polygon = grown.inner if inner else grown.outer
-    # on chords a contact of an arc may rest anywhere on its own chord
+def local_cage_on(
+    polygon: Outline, hand: HandShape, true: FloatArray, segments: int, arc: float, method: Method
+) -> LocalCage | None:
+    """What is round the target on a polygon of some segments a quadrant; None if it is not held.
+
+    ``arc`` is the radius of an arc that carries a contact, or 0: on chords that contact may rest
+    anywhere on its own chord.
+    """
     chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
-    local_cage = method.local_cage(
-        polygon, hand, true, max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-    )
-    if local_cage is None:
-        return None
-    return ArcLocalCage(
-        segments, inner, local_cage, local_cage.sigma_max, local_cage.sigma_first, grown.sagitta
-    )
+    reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
+    return method.local_cage(polygon, hand, true, reach, turn)
 
 
 def _bracketed(

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from icage.cage import Cage
-from icage.discs.critical import Critical, CurveFeatures
+from icage.discs.critical import Critical, CriticalHands
 
 
-def hidden_minima(features: CurveFeatures, cage: Cage, reach: float) -> list[Critical]:
+def hidden_minima(critical: CriticalHands, cage: Cage, reach: float) -> list[Critical]:
     """Minima on the true curve next to cells of a cage, its listed ones among them.
 
     ``reach`` [unit] is how far the polygon may lie off the curve. None for methods without cells.
@@ -22,4 +22,4 @@ def hidden_minima(features: CurveFeatures, cage: Cage, reach: float) -> list[Cri
         return []
     top = np.inf if cage.sigma_max is None else cage.sigma_max
     hands = work.least_hands(top)
-    return features.minima_near(hands, reach) if len(hands) else []
+    return critical.minima_near(hands, reach) if len(hands) else []

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import shapely
 
 from icage.arrays import FloatArray
+from icage.discs.arc_stops import even_stops, resting_chords, unit_vectors
 from icage.discs.curve import TrueCurve
 from icage.errors import GeometryError, GraspError
 from icage.geometry.exterior import without_straight_vertices
@@ -27,15 +27,6 @@ from icage.tolerance import COLLISION, CONTACT_OFF
 
 _APART = 1e-6
 """[rad] A contact nearer than this to the end of an arc counts as at the end."""
-
-_RESTING = 1e-3
-"""[rad] Half the chord on which a contact of an arc rests. Were the contact a corner of the chords,
-its normal would be off by half a step on either side, and a grasp could slide away that the arc
-holds. The chord lies only 5e-7 radii inside."""
-
-_WHOLE = 1e-6
-"""[segment] An arc this little longer than a whole number of segments gets no further one: a right
-angle that the rounding of a distant drawing has opened is split as the right angle is."""
 
 _GRID = 1e-15
 """[diameter] Noding grid of the union."""
@@ -159,45 +150,18 @@ def _split(
     ends are the strips' own corners and the fan reaches into both strips.
     """
     wanted = [t for t in (_along(arc, x) for x in through) if t is not None]
-    resting = _resting(wanted, arc.turn)
-    on_arc = arc.vertex + radius * _unit(arc.start + _stops(arc.turn, segments, resting))
-    at = arc.start + _stops(arc.turn, segments, wanted)
+    resting = [e for t, half in resting_chords(arc.turn, wanted) for e in (t - half, t + half)]
+    chord_ends = arc.start + even_stops(arc.turn, segments, resting)
+    on_arc = arc.vertex + radius * unit_vectors(chord_ends)
+    at = arc.start + even_stops(arc.turn, segments, wanted)
     step = np.diff(at)
     reach = radius / np.cos(0.5 * step)
-    corners = arc.vertex + reach[:, None] * _unit(at[:-1] + 0.5 * step)
+    corners = arc.vertex + reach[:, None] * unit_vectors(at[:-1] + 0.5 * step)
     first, last = arc.ends
     into, out_of = arc.anchors
     chords = shapely.Polygon([arc.vertex, into, first, *on_arc[1:-1], last, out_of])
     tangents = shapely.Polygon([arc.vertex, into, first, *corners, last, out_of])
     return chords, tangents, float(step.max())
-
-
-def _resting(wanted: list[float], turn: float) -> list[float]:
-    """Both ends of a short chord round every contact, shorter where two contacts are close.
-
-    Near an end of the arc it is shorter too: cut off there, it would have another normal.
-    """
-    ends: list[float] = []
-    ordered = sorted(wanted)
-    for k, t in enumerate(ordered):
-        room = [abs(t - u) / 3.0 for u in ordered[max(0, k - 1) : k + 2] if u != t]
-        half = min(_RESTING, t, turn - t, *room)
-        ends += [t - half, t + half]
-    return ends
-
-
-def _stops(turn: float, segments: int, wanted: list[float]) -> FloatArray:
-    """Angles from 0 to ``turn`` that split an arc, through the wanted ones."""
-    stops = sorted({0.0, turn, *(t for t in wanted if 0.0 < t < turn)})
-    angles: list[float] = [0.0]
-    for low, high in pairwise(stops):
-        parts = max(1, math.ceil((high - low) / (0.5 * math.pi) * segments - _WHOLE))
-        angles.extend(np.linspace(low, high, parts + 1)[1:].tolist())
-    return np.array(angles)
-
-
-def _unit(angle: FloatArray) -> FloatArray:
-    return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _along(arc: Arc, direction: float) -> float | None:

@@ -18,18 +18,18 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, not_a_cage
-from icage.discs.brackets import plan_by_resolutions
-from icage.discs.critical import Critical, CurveFeatures
+from icage.discs.brackets import local_cage_on, plan_by_resolutions
+from icage.discs.critical import Critical, CriticalHands
 from icage.discs.curve import TrueCurve
 from icage.discs.hidden import hidden_minima
 from icage.discs.offsets import check_disc_contacts, directions_on_arcs, offsets
-from icage.discs.true_levels import REACH, TrueLevels, true_levels
+from icage.discs.true_levels import REACH, SAME, TrueLevels, true_levels
 from icage.errors import GeometryError
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
 from icage.method import LocalCage, Method
 from icage.outline import Outline
-from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
 SEGMENTS = (8, 24, 64)
 """Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
@@ -44,9 +44,6 @@ _THROUGH = 1e-6
 _TIGHT = 1e-6
 """[1] Where a polygon's level is lower by more (relative) than that of its puncture on the true
 curve, another puncture may lie between, unless polygon after polygon leads to the same levels."""
-
-_SAME = 1e-7
-"""[diameter] Two minima whose fingers are this near are one."""
 
 _INSIDE = 1e-9
 """[1] A solved level may be this little (relative) outside its bracket: rounding."""
@@ -63,11 +60,11 @@ def plan_discs(
         check_disc_contacts(outline, radius, contacts)
         return plan_by_resolutions(outline, hand, contacts, radius, method)
     check_disc_contacts(outline, radius, contacts, curve)
-    features = CurveFeatures(outline, radius, hand)
-    target = _target(features, contacts)
+    critical = CriticalHands(outline, radius, hand)
+    target = _target(critical, contacts)
     true = contacts if target is None else target.contacts
     for segments in SEGMENTS:
-        look = _Polygons(curve, features, method, contacts, true, target, segments)
+        look = _Polygons(curve, critical, method, contacts, true, target, segments)
         outer = look.outer_levels()
         inner = look.inner_levels(outer)
         if isinstance(inner, Cage):
@@ -80,13 +77,13 @@ def plan_discs(
     return plan_by_resolutions(outline, hand, contacts, radius, method)
 
 
-def _target(features: CurveFeatures, contacts: FloatArray) -> Critical | None:
+def _target(critical: CriticalHands, contacts: FloatArray) -> Critical | None:
     """The minimum on the true curve that the contacts are meant for."""
-    found = features.minimum(contacts, 2.0 * TARGET_SHIFT * features.size)
+    found = critical.minimum(contacts, 2.0 * TARGET_SHIFT * critical.size)
     if found is None or found.level:
         return None
     far = float(np.hypot(*(found.contacts - contacts).T).max())
-    return found if far <= TARGET_SHIFT * features.size else None
+    return found if far <= TARGET_SHIFT * critical.size else None
 
 
 class _Solved(NamedTuple):
@@ -108,7 +105,7 @@ class _Polygons:
     """The polygons of one resolution that stand in for the true curve."""
 
     curve: TrueCurve
-    features: CurveFeatures
+    critical: CriticalHands
     method: Method
     contacts: FloatArray
     true: FloatArray
@@ -143,7 +140,7 @@ class _Polygons:
             if local_cage is None:
                 if self.target is not None:
                     return None
-                hand, curve = self.features.hand, self.curve
+                hand, curve = self.critical.hand, self.curve
                 cage = self.method.cage(polygon, hand, self.contacts, curve.outline, curve.radius)
                 return replace(cage, contacts=self.contacts)
             cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
@@ -193,7 +190,7 @@ class _Polygons:
         if solved / levels.sigma_0 - 1.0 < NOT_A_CAGE:
             why = f"too shallow to tell: sigma_max / sigma_0 is at most {high / levels.sigma_0:.9g}"
             outline, radius = self.curve.outline, self.curve.radius
-            return not_a_cage(outline, self.features.hand, self.contacts, why, radius)
+            return not_a_cage(outline, self.critical.hand, self.contacts, why, radius)
         return self._finished(inner, max(high, solved), outer)
 
     def _finished(self, inner: _Solved, upper: float | None, outer: LocalCage | None) -> Cage:
@@ -232,11 +229,9 @@ class _Polygons:
         )
 
     def _local_cage(self, polygon: Outline) -> LocalCage | None:
-        # on chords a contact of an arc may rest anywhere on its own chord
         arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
-        chord = 2.0 * arc * 0.5 * np.pi / self.segments / polygon.diameter
-        reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-        return self.method.local_cage(polygon, self.features.hand, self.true, reach, turn)
+        hand = self.critical.hand
+        return local_cage_on(polygon, hand, self.true, self.segments, arc, self.method)
 
     def _outer_polygon(self, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
@@ -248,7 +243,7 @@ class _Polygons:
             return offsets(curve.outline, curve.radius, self.segments, arcs).outer
 
     def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> _Solved:
-        levels = true_levels(self.features, cage, self.curve.sagitta(self.segments), self.target)
+        levels = true_levels(self.critical, cage, self.curve.sagitta(self.segments), self.target)
         return _Solved(local_cage, cage, levels, through)
 
     def _new_on_arcs(
@@ -263,13 +258,13 @@ class _Polygons:
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
         wanted = [self.true, *(p.contacts for p in ends)]
         reach = REACH * self.curve.sagitta(self.segments)
-        near = _SAME * self.features.size
-        for one in hidden_minima(self.features, found.cage, reach) if hidden else []:
+        near = SAME * self.critical.size
+        for one in hidden_minima(self.critical, found.cage, reach) if hidden else []:
             if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):
                 wanted.append(one.contacts)
         kept: list[FloatArray] = list(through)
         for point in self.curve.on_arcs(np.vstack(wanted)):
-            if all(np.hypot(*(point - q)) > _THROUGH * self.features.size for q in kept):
+            if all(np.hypot(*(point - q)) > _THROUGH * self.critical.size for q in kept):
                 kept.append(point)
         return np.array(kept[len(through) :]).reshape(-1, 2)
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
+from icage.discs.balance import finger_maps, pushes, pushing, slope_of_half_square
 from icage.errors import GraspError, HandError
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
@@ -30,7 +31,6 @@ _TRIES = 4
 _COLLAPSED = 0.5
 """[1] Sigma over that of the contacts given, below which the hand has fallen off its features: the
 true curve is nowhere further from a polygon than a small part of the radius."""
-
 
 _INSIDE = 1e-9
 """[diameter] A finger may be this far inside a feature; one this near to it touches it."""
@@ -58,12 +58,12 @@ def features_near(outline: Outline, radius: float, contacts: FloatArray) -> list
     for k, point in enumerate(contacts):
         t = ((point - a) * side).sum(axis=1) / length
         gap = ((point - a) * outward).sum(axis=1)
-        edge = (t >= -reach) & (t <= length + reach) & (np.abs(gap - radius) <= reach)
         # an edge counts as a line only where the finger faces it; beyond its ends its vertex does
-        faces = edge & (t >= -1e-9 * outline.diameter) & (t <= length + 1e-9 * outline.diameter)
-        found += [Feature(k, a[q], outward[q]) for q in np.flatnonzero(faces)]
+        faces = (t >= -1e-9 * outline.diameter) & (t <= length + 1e-9 * outline.diameter)
+        edge = faces & (np.abs(gap - radius) <= reach)
+        found += [Feature(k, a[q], outward[q]) for q in np.flatnonzero(edge)]
         far = np.hypot(*(point - a).T)
-        beyond_before = np.roll(t > np.roll(length, 0) - reach, 1)
+        beyond_before = np.roll(t > length - reach, 1)
         corner = (np.abs(far - radius) <= reach) & (t <= reach) & beyond_before
         found += [Feature(k, a[q], None) for q in np.flatnonzero(corner)]
     return found
@@ -90,7 +90,7 @@ def refine(
     start = np.concatenate([contacts[0] - origin, side]) / size
     system = _System(features, hand, radius / size, origin, size)
     answer = minimize(
-        _half_square, start, jac=_half_square_slope, method="SLSQP",
+        _half_square, start, jac=slope_of_half_square, method="SLSQP",
         options={"ftol": 1e-15, "maxiter": 200},
         constraints={"type": "ineq", "fun": system.gaps, "jac": system.slopes},
     )  # fmt: skip
@@ -203,10 +203,6 @@ def _half_square(v: FloatArray) -> float:
     return 0.5 * float(v[2:] @ v[2:])
 
 
-def _half_square_slope(v: FloatArray) -> FloatArray:
-    return np.array([0.0, 0.0, v[2], v[3]])
-
-
 class _System:
     """Gaps of the features as functions of v = (d_x, d_y, w_x, w_y) / size about an origin."""
 
@@ -217,13 +213,7 @@ class _System:
         self._radius = radius
         self._features = features
         self._points = np.array([(f.point - origin) / size for f in features])
-        # finger k = M_k v
-        self._maps = np.array(
-            [
-                [[1.0, 0.0, z.real, -z.imag], [0.0, 1.0, z.imag, z.real]]
-                for z in (hand.z[f.finger] for f in features)
-            ]
-        )
+        self._maps = finger_maps(hand)[[f.finger for f in features]]
 
     def _normals(self, v: FloatArray) -> tuple[FloatArray, FloatArray]:
         off = self._maps @ v - self._points
@@ -257,12 +247,10 @@ class _System:
 
     def is_balanced(self, v: FloatArray) -> bool:
         """Whether pushing forces of touched features balance, and no finger is inside of one."""
-        from scipy.optimize import nnls
-
         gaps = self.gaps(v)
         if not -_INSIDE <= float(gaps.min()) <= _INSIDE:
             return False
-        _, miss = nnls(self.slopes(v)[gaps <= _INSIDE].T, _half_square_slope(v))
+        _, miss = pushing(self.slopes(v)[gaps <= _INSIDE].T, slope_of_half_square(v))
         return bool(miss <= _BALANCED * np.hypot(*v[2:]))
 
     def polished(self, v: FloatArray, *, loaded: bool = False) -> FloatArray | None:
@@ -270,23 +258,18 @@ class _System:
 
         ``loaded`` keeps to those that carry some when all forces push.
         """
-        from scipy.optimize import nnls
-
         active: IntArray = np.flatnonzero(self.gaps(v) < 1e-7).astype(np.int64)
+        if loaded and len(active):
+            force, _ = pushing(self.slopes(v)[active].T, slope_of_half_square(v))
+            active = active[pushes(force)]
         if not len(active):
             return None
-        if loaded:
-            pushing, _ = nnls(self.slopes(v)[active].T, _half_square_slope(v))
-            active = active[pushing > 1e-9 * pushing.max()]
-            if not len(active):
-                return None
         slope = self.slopes(v)[active]
-        gradient = _half_square_slope(v)
-        force: FloatArray = np.linalg.lstsq(slope.T, gradient, rcond=1e-9)[0].astype(np.float64)
+        force = np.linalg.lstsq(slope.T, slope_of_half_square(v), rcond=1e-9)[0].astype(np.float64)
         for _ in range(8):
             slope = self.slopes(v)[active]
             residual = np.concatenate(
-                [_half_square_slope(v) - slope.T @ force, self.gaps(v)[active]]
+                [slope_of_half_square(v) - slope.T @ force, self.gaps(v)[active]]
             )
             n = len(active)
             matrix = np.block(
@@ -297,6 +280,5 @@ class _System:
                 return None
             v = np.asarray(v + step[:4], dtype=np.float64)
             force = np.asarray(force + step[4:], dtype=np.float64)
-        gradient = _half_square_slope(v)
-        off = gradient - self.slopes(v)[active].T @ force
+        off = slope_of_half_square(v) - self.slopes(v)[active].T @ force
         return v if float(np.abs(off).max()) < 1e-9 else None

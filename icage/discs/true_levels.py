@@ -15,10 +15,10 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, GraspMinimum, Puncture
-from icage.discs.critical import Critical, CurveFeatures
+from icage.discs.critical import Critical, CriticalHands
 from icage.tolerance import DEPTH_CUT, DEPTH_ROUGH, LEVEL
 
-_SAME = 1e-7
+SAME = 1e-7
 """[diameter] Two solved minima whose fingers are this near are one."""
 
 _FAR = 0.05
@@ -55,13 +55,13 @@ class TrueLevels:
 
 
 def true_levels(
-    features: CurveFeatures, cage: Cage, sagitta: float, target: Critical | None = None
+    critical: CriticalHands, cage: Cage, sagitta: float, target: Critical | None = None
 ) -> TrueLevels:
     """The levels on the true curve of a cage that a method has found on a polygon.
 
     Parameters
     ----------
-    features:
+    critical:
         Of the outline, the radius and the hand of the cage.
     cage:
         What ``LocalCage.cage`` gives for an inner or outer polygon: by either method, status not
@@ -75,16 +75,16 @@ def true_levels(
     -----
     About 0.5 ms for each grasp and puncture of the cage.
     """
-    solving = _Solving(features, cage, sagitta)
+    solving = _Solving(critical, cage, sagitta)
     return solving.levels(target)
 
 
 class _Solving:
-    def __init__(self, features: CurveFeatures, cage: Cage, sagitta: float) -> None:
-        self._features = features
+    def __init__(self, critical: CriticalHands, cage: Cage, sagitta: float) -> None:
+        self._critical = critical
         self._cage = cage
-        self._least_depth = DEPTH_CUT * features.size
-        self._reach = REACH * sagitta + 1e-7 * features.size
+        self._least_depth = DEPTH_CUT * critical.size
+        self._reach = REACH * sagitta + 1e-7 * critical.size
         self._grasps: list[GraspMinimum] = []
         self._origin: list[int] = []
         self._unsolved: set[int] = set()
@@ -116,7 +116,7 @@ class _Solving:
             if found.sigma - lowest <= self._least_depth:
                 continue
             punctures.append(replace(found, joins=tuple(new)))
-            if found.sigma - lowest > DEPTH_ROUGH * self._features.size:
+            if found.sigma - lowest > DEPTH_ROUGH * self._critical.size:
                 rough.append(found.sigma)
             # one minimum that is there and deep enough makes it a puncture
             deep = [k for k in new if found.sigma - self._grasps[k].sigma > self._least_depth]
@@ -132,15 +132,15 @@ class _Solving:
 
     def _add(self, grasp: GraspMinimum, known: Critical | None) -> None:
         """Solve a grasp and give it its place, that of another one if they are the same."""
-        found = known or self._features.minimum(grasp.contacts, self._reach)
+        found = known or self._critical.minimum(grasp.contacts, self._reach)
         if found is None and not grasp.target:
-            found = self._features.below(grasp.contacts, self._reach)
+            found = self._critical.below(grasp.contacts, self._reach)
         if found is None:
             self._unsolved.add(len(self._grasps))
         elif found.level == 0 or grasp.plateau is None:
             for place, other in enumerate(self._grasps):
                 off = float(np.abs(other.contacts - found.contacts).max())
-                if off <= _SAME * self._features.size:
+                if off <= SAME * self._critical.size:
                     self._at[grasp.id] = place
                     return
             grasp = replace(
@@ -155,7 +155,7 @@ class _Solving:
         self._grasps.append(grasp)
 
     def _puncture(self, puncture: Puncture) -> tuple[Puncture, bool]:
-        found = self._features.puncture(puncture.contacts, self._reach)
+        found = self._critical.puncture(puncture.contacts, self._reach)
         if found is None or abs(found.sigma / puncture.sigma - 1.0) > _FAR:
             return puncture, False
         return replace(
@@ -166,7 +166,7 @@ class _Solving:
         ), True
 
     def _free(self, contacts: FloatArray) -> tuple[int, ...]:
-        return self._features.free_fingers(contacts)
+        return self._critical.free_fingers(contacts)
 
     def _settled(
         self, punctures: list[Puncture], solved: list[bool], last: tuple[Puncture, bool] | None

@@ -88,7 +88,7 @@ def stretches(ring: FloatArray) -> list[Stretch]:
     []
     """
     found: list[Stretch] = []
-    for first, last in _groups(_turns(ring)):
+    for first, last in _groups(turns(ring)):
         apex = _apex(ring, first, last)
         if apex is not None:
             found.append(Stretch(first, last, apex))
@@ -109,8 +109,8 @@ def with_apexes(ring: FloatArray) -> Covered:
     return Covered(np.array(coarse, dtype=np.int64), apexes, fans)
 
 
-def _turns(ring: FloatArray) -> FloatArray:
-    """Angle from edge k - 1 to edge k, [rad], (n,)."""
+def turns(ring: FloatArray) -> FloatArray:
+    """Angle (n,) [rad] from edge k - 1 to edge k of a ring (n, 2), positive at a convex vertex."""
     side = np.roll(ring, -1, axis=0) - ring
     before = np.roll(side, 1, axis=0)
     cross = before[:, 0] * side[:, 1] - before[:, 1] * side[:, 0]

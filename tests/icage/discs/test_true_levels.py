@@ -15,7 +15,7 @@ import icage
 from icage.cage import Cage
 from icage.cells.method import CELLS
 from icage.contact_space.method import ContactSpace
-from icage.discs.critical import CurveFeatures
+from icage.discs.critical import CriticalHands
 from icage.discs.curve import TrueCurve
 from icage.discs.true_levels import true_levels
 from icage.errors import GraspError
@@ -218,7 +218,7 @@ def test_both_methods_lead_to_the_same_hands(number: int) -> None:
 def test_what_cannot_be_solved_keeps_its_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
     target = drawn_target(7, 4)
     solved = cage_of(target)
-    monkeypatch.setattr(CurveFeatures, "puncture", lambda *_: None)
+    monkeypatch.setattr(CriticalHands, "puncture", lambda *_: None)
     cage = cage_of(target)
     assert any("not solved on the true curve" in w for w in cage.warnings)
     assert cage.sigma_max is not None
@@ -239,7 +239,7 @@ def test_the_levels_of_one_candidate() -> None:
     local = CELLS.local_cage(polygon, hand, target.contacts, 1e-3, 1e-2)
     assert local is not None
     found = true_levels(
-        CurveFeatures(outline, target.radius, hand),
+        CriticalHands(outline, target.radius, hand),
         local.cage(target.contacts, outline, target.radius),
         curve.sagitta(16),
     )

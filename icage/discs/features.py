@@ -1,0 +1,200 @@
+"""Edges and convex vertices that the fingers of a hand touch, and the gaps that they leave it.
+
+A hand is v = (d, w), and the gap g(v) of a feature is the distance of a finger from a straight edge
+or from a convex vertex, less the radius. Arcs run into edges without a kink and corners of the
+curve are concave, so gaps are smooth and free space near a hand is where none is negative. Our own.
+[docs/theory.md, Sec. 4]
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from icage.arrays import BoolArray, FloatArray
+from icage.discs.balance import finger_maps
+from icage.discs.edges import Edges
+from icage.geometry.exterior import without_straight_vertices
+from icage.hand import HandShape
+from icage.kernels.locate import depth_inside
+from icage.outline import Outline
+
+
+class Feature(NamedTuple):
+    """Finger ``finger`` (0..) at an edge or at a vertex of the outline, by number."""
+
+    finger: int
+    number: int
+    is_arc: bool
+
+
+class Gaps(NamedTuple):
+    """Gaps (m,) of features, their unit normals (m, 2) and slopes (m, 4), the derivatives by v."""
+
+    value: FloatArray
+    normal: FloatArray
+    slope: FloatArray
+
+
+class Features:
+    """The features of one outline for the fingers of one hand and radius.
+
+    Lengths inside are in diameters, from the middle of the outline; so are hands v (4,).
+    """
+
+    def __init__(self, outline: Outline, radius: float, hand: HandShape) -> None:
+        self.size = outline.diameter
+        self.radius = radius / self.size
+        ring = without_straight_vertices(outline.vertices, self.size)
+        self._origin = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
+        self._ring = np.ascontiguousarray((ring - self._origin) / self.size)
+        self._edges = Edges.of(self._ring)
+        self._hand = hand
+        self._maps = finger_maps(hand)
+
+    # ------------------------------------------------------------------ hands
+
+    def scaled(self, contacts: FloatArray) -> FloatArray:
+        """Contacts (..., 2) [unit] in diameters."""
+        return (contacts - self._origin) / self.size
+
+    def as_hand(self, contacts: FloatArray) -> FloatArray:
+        """The hands v (..., 4) with contacts (..., fingers, 2) [unit]."""
+        at = self.scaled(contacts)
+        return np.concatenate([at[..., 0, :], at[..., 1, :] - at[..., 0, :]], axis=-1)
+
+    def as_contacts(self, v: FloatArray) -> FloatArray:
+        """Contacts (fingers, 2) [unit] of a hand."""
+        f = (v[0] + 1j * v[1]) + (v[2] + 1j * v[3]) * self._hand.z
+        return np.column_stack([f.real, f.imag]) * self.size + self._origin
+
+    def fingers(self, v: FloatArray) -> FloatArray:
+        """The finger centres (fingers, 2) of a hand, or their moves for a change of it."""
+        return self._maps @ v
+
+    def longest_move(self, step: FloatArray) -> float:
+        """How far the finger moves that moves furthest, if v changes by ``step`` (4,)."""
+        return float(np.hypot(*self.fingers(step).T).max())
+
+    def depths(self, contacts: FloatArray) -> FloatArray:
+        """How far points (k, 2) [unit] are inside the curve, negative outside, (k,)."""
+        return depth_inside(self._ring, self.scaled(contacts), self.radius)
+
+    # ------------------------------------------------------------------ which
+
+    def touched(self, at: FloatArray, reach: float, beyond: float = 0.0) -> BoolArray:
+        """Which features fingers at (k, fingers, 2) nearly touch, (k, fingers x 2 edges).
+
+        Those with a gap of at most ``reach``, and ``beyond`` past their ends. Of each finger first
+        the edges, then the vertices.
+        """
+        edges = self._edges
+        off = at[:, :, None] - edges.start
+        along = (off * edges.way).sum(axis=3)
+        past_end = along - edges.length
+        gap = (off * edges.out).sum(axis=3) - self.radius
+        edge = (np.abs(gap) <= reach) & (along >= -beyond) & (past_end <= beyond)
+        far = np.hypot(off[..., 0], off[..., 1])
+        arc = (np.abs(far - self.radius) <= reach) & edges.convex
+        arc &= (along <= beyond) & (np.roll(past_end, 1, axis=2) >= -beyond)
+        return np.concatenate([edge, arc], axis=2).reshape(len(at), -1)
+
+    def named(self, touched: BoolArray) -> list[Feature]:
+        """The features of a row of ``touched``."""
+        n = len(self._ring)
+        return [
+            Feature(k // (2 * n), k % n, bool(k % (2 * n) >= n))
+            for k in np.flatnonzero(touched).tolist()
+        ]
+
+    def near(self, v: FloatArray, reach: float) -> list[Feature]:
+        """Features within ``reach`` of being touched, of all fingers."""
+        return self.named(self.touched(self.fingers(v)[None], reach, reach)[0])
+
+    def beside(self, v: FloatArray, feature: Feature, slack: float) -> Feature | None:
+        """The next feature along the curve, if a finger is more than ``slack`` past its end.
+
+        Off the end of an edge that is its vertex, off the end of an arc the edge beside it. The
+        vertex may be one that is not convex, and so no feature at all.
+        """
+        finger, q, is_arc = feature
+        way, n = self._edges.way, len(self._ring)
+        off = self._maps[finger] @ v - self._ring[q]
+        along = float(off @ way[q])
+        if not is_arc:
+            if along < -slack:
+                return Feature(finger, q, True)
+            if along > self._edges.length[q] + slack:
+                return Feature(finger, (q + 1) % n, True)
+        elif along > slack:
+            return Feature(finger, q, False)
+        elif float(off @ way[q - 1]) < -slack:
+            return Feature(finger, (q - 1) % n, False)
+        return None
+
+    def exists(self, feature: Feature) -> bool:
+        """Whether it is an edge or a vertex that is convex."""
+        return not feature.is_arc or bool(self._edges.convex[feature.number])
+
+    def deepest(self, v: FloatArray, least: float) -> Feature | None:
+        """The feature that a finger is deepest inside, if any is deeper than ``least``."""
+        points = self.fingers(v)
+        depth = depth_inside(self._ring, points, self.radius)
+        k = int(np.argmax(depth))
+        if depth[k] <= least:
+            return None
+        off, t = self._from_edges(points[k])
+        q = int(np.argmin(np.hypot(*off.T)))
+        if t[q] <= 0.0 or t[q] >= self._edges.length[q]:
+            vertex = Feature(k, q if t[q] <= 0.0 else (q + 1) % len(self._ring), True)
+            if self.exists(vertex):
+                return vertex
+        return Feature(k, q, False)
+
+    # ------------------------------------------------------------------ gaps
+
+    def gaps(self, v: FloatArray, features: list[Feature]) -> Gaps:
+        """The gaps that features leave a hand."""
+        maps = self._maps[[f.finger for f in features]]
+        number = [f.number for f in features]
+        off = maps @ v - self._ring[number]
+        normals = self._edges.out[number]
+        for k, f in enumerate(features):
+            if f.is_arc:
+                normals[k] = off[k] / math.hypot(off[k, 0], off[k, 1])
+        value = (normals * off).sum(axis=1) - self.radius
+        return Gaps(value, normals, np.einsum("ki,kij->kj", normals, maps))
+
+    def curvature(self, features: list[Feature], gaps: Gaps, force: FloatArray) -> FloatArray:
+        """Second derivative (4, 4) of w . w / 2 - sum of force times gap."""
+        hessian = np.diag([0.0, 0.0, 1.0, 1.0])
+        for k, f in enumerate(features):
+            if f.is_arc:
+                nx, ny = gaps.normal[k]
+                across = np.array([-ny, nx]) @ self._maps[f.finger]
+                hessian -= force[k] / (self.radius + gaps.value[k]) * np.outer(across, across)
+        return hessian
+
+    def half_planes(self, v: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
+        """Slopes (m, 4) and gaps (m,) of the free half planes around the fingers of a hand.
+
+        One for each nearest point of an edge that a finger is within ``reach`` of touching.
+        """
+        slopes: list[FloatArray] = []
+        gaps: list[FloatArray] = []
+        for m in self._maps:
+            off, _ = self._from_edges(m @ v)
+            far = np.hypot(off[:, 0], off[:, 1])
+            use = np.flatnonzero((far < self.radius + reach) & (far > 1e-9))
+            slopes.append(off[use] / far[use, None] @ m)
+            gaps.append(far[use] - self.radius)
+        return np.concatenate(slopes), np.concatenate(gaps)
+
+    def _from_edges(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """To a point from the nearest points of all edges (n, 2), and where these are on them."""
+        edges = self._edges
+        off = point - edges.start
+        t = np.clip((off * edges.way).sum(axis=1), 0.0, edges.length)
+        return off - t[:, None] * edges.way, t
