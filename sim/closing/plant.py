@@ -28,7 +28,7 @@ def plant_of(scene: Scene) -> Plant:
     body = np.array([model.body(name).id for name in _BODIES])
     thing = body[-1]
     mass = np.append(model.body_mass[body], [model.body_mass[thing], model.body_inertia[thing, 2]])
-    damping = np.array(model.dof_damping, dtype=np.float64).reshape(6, -1)[:, 0]
+    damping = np.array(model.dof_damping, dtype=np.float64)
     metric = mass + step * damping
     pull = np.zeros(6)
     pull[:3] = scene.closing_force * hand.tendon_coefficients
