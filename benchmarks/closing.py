@@ -34,16 +34,11 @@ from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.closing.one import data_at
 from sim.world.scene import Scene
-from tests.sim.grasps import KnownGrasp, l_shape, shipped, starts_near, t_shape, triangle
+from tests.sim.grasps import KnownGrasp, starts_near, triangle
 
 BASELINE = Path(__file__).with_name("closing_baseline.json")
 
-TARGETS = {
-    "T": t_shape,
-    "L": l_shape,
-    "pliers": lambda: shipped("pliers"),
-    "saw": lambda: shipped("saw"),
-}
+TARGETS = ("T", "L", "pliers", "saw")
 
 
 def main() -> None:
@@ -75,8 +70,8 @@ def main() -> None:
         "per second  steps each  us/step  bare us/step  step / bare    closing / yardstick  reached"
     )
     figures: dict[str, float] = {"yardstick": yardstick}
-    for name, make in TARGETS.items():
-        grasp = make()
+    for name in TARGETS:
+        grasp = ALL[name]()
         starts = guaranteed_starts(grasp, options.trials)
         figures |= _report(name, grasp, starts, options, yardstick, base)
     apart = triangle()  # no corner: slow to settle, and starts near the target only

@@ -35,6 +35,8 @@ GRASPS = {
     "saw": lambda: shipped("saw"),
     "triangle": triangle,
 }
+"""Of ``tests.sim.grasps.GRASPS``, which an older checkout does not have."""
+
 WITH_REST = {
     "pliers_4": lambda: of_file("pliers/cases/4_with_rest.json"),
     "saw_2": lambda: of_file("saw/cases/2_with_rest.json"),

@@ -23,15 +23,9 @@ from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.world.held_hand import held_model
 from tests.sim.chipmunk.test_chipmunk import on_the_way_out
-from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
+from tests.sim.grasps import GRASPS, KnownGrasp
 
-GRASPS = {
-    "T": t_shape(),
-    "L": l_shape(),
-    "triangle": triangle(),
-    "pliers": shipped("pliers"),
-    "saw": shipped("saw"),
-}
+NAMES = ("T", "L", "triangle", "pliers", "saw")
 OPENINGS = (0.998, 1.02, 1.05, 1.1)
 PULL = RandomPull(duration=8.0)
 
@@ -75,10 +69,10 @@ def main() -> None:
     """Print all lines."""
     closings, attacks = (int(word) for word in [*sys.argv[1:], "60", "12"][:2])
     print("second engine and MuJoCo; lengths in diameters", flush=True)
-    for name, grasp in GRASPS.items():
-        print(closing_line(name, grasp, closings), flush=True)
+    for name in NAMES:
+        print(closing_line(name, GRASPS[name](), closings), flush=True)
     for factor in OPENINGS:
-        print(attack_line(GRASPS["pliers"], factor, attacks), flush=True)
+        print(attack_line(GRASPS["pliers"](), factor, attacks), flush=True)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import shapely
@@ -44,6 +46,12 @@ def case_outline(name: str) -> tuple[Outline, FloatArray, float]:
     case = json.loads((CASES / f"{name}.json").read_text())
     contacts = np.array(case["grasp"]["contacts"])
     return Outline(case["outline"]["vertices"]), contacts, case["finger_radius"]
+
+
+def disc_case(name: str) -> KnownGrasp:
+    """The grasp of a shipped solved case with disc fingers."""
+    outline, contacts, radius = case_outline(name)
+    return KnownGrasp(outline, radius, contacts)
 
 
 def t_shape() -> KnownGrasp:
@@ -90,6 +98,18 @@ def shipped(name: str) -> KnownGrasp:
     }[name]
     case = json.loads(models.outline_path(name).read_text())
     return KnownGrasp(Outline(case["outline"]["vertices"]), 6.0, np.array(contacts))
+
+
+GRASPS: Final[dict[str, Callable[[], KnownGrasp]]] = {
+    "T": t_shape,
+    "L": l_shape,
+    "triangle": triangle,
+    "pliers": lambda: shipped("pliers"),
+    "saw": lambda: shipped("saw"),
+    "wrench": lambda: shipped("wrench"),
+    "hammer": lambda: disc_case("disc_hammer"),
+}
+"""Every known grasp by its name, to be made when it is needed."""
 
 
 def starts_near(

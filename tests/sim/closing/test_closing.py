@@ -17,12 +17,7 @@ from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import ENDINGS
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
-from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle
-
-
-def disc_case(name: str) -> KnownGrasp:
-    outline, contacts, radius = case_outline(name)
-    return KnownGrasp(outline, radius, contacts)
+from tests.sim.grasps import KnownGrasp, disc_case, l_shape, starts_near, t_shape, triangle
 
 
 def assert_identical(one: ClosingOutcomes, other: ClosingOutcomes) -> None:

@@ -14,14 +14,9 @@ from sim.closing.one import close
 from sim.grip.form_closure import form_closure, touches, wrench_matrix
 from sim.grip.play import clearance, measure_play, opened, predicted_play
 from sim.grip.shake import HELD_SHIFT, PUSH, PUSH_TIME, SHAKES, pushes, random_wrenches, shake
-from tests.sim.grasps import KnownGrasp, l_shape, shipped, t_shape, triangle
+from tests.sim.grasps import GRASPS, KnownGrasp, l_shape, t_shape, triangle
 
-GRASPS = {"triangle": triangle, "L": l_shape, "T": t_shape}
 CORNERS = {"triangle": 0, "L": 1, "T": 2, "pliers": 1, "saw": 1}
-
-
-def grasp(name: str) -> KnownGrasp:
-    return GRASPS[name]() if name in GRASPS else shipped(name)
 
 
 def skew() -> KnownGrasp:
@@ -48,7 +43,7 @@ def closed(known: KnownGrasp):
 
 @pytest.mark.parametrize("name", sorted(CORNERS))
 def test_rank_and_closure_are_those_of_the_contacts(name: str):
-    known = grasp(name)
+    known = GRASPS[name]()
     scene, held, qpos = closed(known)
     assert held.concave_corners == CORNERS[name]
     found = touches(scene, qpos)
@@ -64,7 +59,7 @@ def test_rank_and_closure_are_those_of_the_contacts(name: str):
 
 @pytest.mark.parametrize("name", ["triangle", "T"])
 def test_a_closed_hand_holds(name: str):
-    scene, _, qpos = closed(grasp(name))
+    scene, _, qpos = closed(GRASPS[name]())
     answer = shake(scene, qpos, np.random.default_rng(1))
     assert answer.held
     assert len(answer.pushes) == 10
