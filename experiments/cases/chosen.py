@@ -7,7 +7,7 @@ import os
 import shlex
 import sys
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from icage.cage import Cage
 from icage.case import Case
 from icage.errors import InputError
 from icage.formats.case_json import grasp_name
+
+if TYPE_CHECKING:
+    from icage.grasps.planned import PlannedGrasps
+    from icage.grasps.wanted import Wanted
 
 SEARCHED: Final = 10
 """Grasps that are planned before the best is taken: as many as ``icage grasps`` lists."""
@@ -52,15 +56,10 @@ def chosen(case: Case, args: argparse.Namespace, count: int = 1) -> Chosen:
     """
     if case.target is not None:
         return Chosen((case,))
-    from icage.grasps.of_case import best_of_case  # only now: the search is a planner of its own
     from icage.grasps.wanted import Wanted
-    from icage.kernels.compiled import long_job
 
     check_radius(case)
-    long_job()
-    rng, workers = np.random.default_rng(0), min(WORKERS, os.cpu_count() or 1)
-    with search_bar() as bar:
-        found = best_of_case(case, max(SEARCHED, count), Wanted("first"), rng, workers, bar)
+    found = best_grasps_of(case, max(SEARCHED, count), Wanted("first"))
     cages = found.cages[:count]
     if not cages:
         raise InputError(f"{case.name}: none of {found.compared} grasps compared is a cage")
@@ -73,6 +72,24 @@ def chosen(case: Case, args: argparse.Namespace, count: int = 1) -> Chosen:
     for number, cage in enumerate(cages, 1):
         print(f"icage: grasp {number}: {_levels(cage, case.unit)}", file=sys.stderr, flush=True)
     return Chosen(cases_from(case, cages), search_command(case, args, args.case))
+
+
+def best_grasps_of(
+    case: Case,
+    top: int,
+    wanted: Wanted,
+    seed: int = 0,
+    workers: int | None = None,
+    seconds: float | None = None,
+) -> PlannedGrasps:
+    """``icage.grasps.of_case.best_of_case`` under a bar, on the machine's cores unless told."""
+    from icage.grasps.of_case import best_of_case  # only now: the search is a planner of its own
+    from icage.kernels.compiled import long_job
+
+    long_job()
+    rng, threads = np.random.default_rng(seed), workers or min(WORKERS, os.cpu_count() or 1)
+    with search_bar() as bar:
+        return best_of_case(case, top, wanted, rng, threads, bar, seconds)
 
 
 def check_radius(case: Case) -> None:

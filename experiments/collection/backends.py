@@ -15,9 +15,10 @@ from typing import Any, Protocol, TypeAlias
 from experiments.collection.objects import Readable
 from experiments.collection.options import SearchOptions, options_of
 from experiments.collection.rows import Row, searched_rows
-from experiments.io.cluster import Cluster, check_here
+from experiments.io.cluster import Cluster, document_here
 from experiments.io.pieces import in_pool, in_threads
 from icage.errors import InputError
+from icage.grasps.crew import Progress
 from icage.kernels.compiled import long_job
 
 Backend: TypeAlias = Callable[[Iterable[Readable]], Generator[tuple[Readable, list[Row]]]]
@@ -63,7 +64,7 @@ class _Flag(Protocol):
     def is_set(self) -> bool: ...
 
 
-def _until(given_up: _Flag) -> Callable[[str, int, int, float | None], None]:
+def _until(given_up: _Flag) -> Progress:
     """Progress that ends a search for which nobody waits any more."""
 
     def progress(_stage: str, _done: int, _total: int, _best: float | None) -> None:
@@ -104,11 +105,10 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     ClusterError:
         As ``experiments.io.cluster.Cluster``.
     """
-    cluster = Cluster(address, document["versions"])
-    text = json.dumps(document, sort_keys=True)
+    cluster = Cluster(address, document)
 
     def backend(objects: Iterable[Readable]) -> Generator[tuple[Readable, list[Row]]]:
-        yield from cluster.run(run_remote, text, objects, _name)
+        yield from cluster.run(run_remote, objects, _name)
 
     return backend
 
@@ -124,7 +124,6 @@ def run_remote(text: str, one: Readable) -> list[Row]:
 
 @lru_cache(maxsize=4)
 def _options(text: str) -> SearchOptions:
-    document = json.loads(text)
-    check_here(document["versions"])
+    document = document_here(text)
     long_job()
     return options_of(document)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -14,6 +14,7 @@ from experiments.collection.objects import Readable, Unreadable, reason
 from experiments.collection.options import SearchOptions
 from experiments.io.arrow_table import Table
 from icage.cage import Cage
+from icage.grasps.crew import Progress
 from icage.grasps.of_case import best_of_case
 from icage.grasps.planned import PlannedGrasps, score
 
@@ -66,7 +67,7 @@ def unreadable_row(one: Unreadable) -> Row:
 def searched_rows(
     one: Readable,
     options: SearchOptions,
-    progress: Callable[[str, int, int, float | None], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Row]:
     """The best grasps of an object, as ``icage grasps`` finds them with this seed.
 

@@ -5,12 +5,13 @@ A piece is pure: one that died with its worker is simply run again elsewhere.
 
 from __future__ import annotations
 
+import json
 import logging
 import re
 import socket
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Final, TypeVar
@@ -48,9 +49,9 @@ class Cluster:
 
     Attributes
     ----------
-    wanted:
-        Versions of what computes, which every worker must have: with others its answers would not
-        be those of one machine.
+    document:
+        What decides the answers, JSON-ready. Its ``versions`` are of what computes, and every
+        worker must have them: with others its answers would not be those of one machine.
 
     Raises
     ------
@@ -59,29 +60,33 @@ class Cluster:
     """
 
     address: str
-    wanted: Mapping[str, str]
+    document: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        with _connected(self.address, self.wanted):
+        with self._connected():
             pass
+
+    def _connected(self) -> AbstractContextManager[Any]:
+        return _connected(self.address, self.document["versions"])
 
     def run(
         self,
         work: Callable[[str, Piece], Done],
-        text: str,
         pieces: Iterable[Piece],
         names: Callable[[Piece], str],
     ) -> Generator[tuple[Piece, Done]]:
         """Every piece with what ``work(text, piece)`` made of it, in any order.
 
-        ``names`` says what a piece is, for the error that tells which one killed its workers.
+        ``text`` is the document's, for ``document_here``. ``names`` says what a piece is, for the
+        error that tells which one killed its workers.
 
         Raises
         ------
         ClusterError:
             The scheduler is lost, or a piece killed every worker that it was given to.
         """
-        with _connected(self.address, self.wanted) as client:
+        text = json.dumps(self.document, sort_keys=True)
+        with self._connected() as client:
             yield from _results(client, work, text, pieces, names)
 
 
@@ -183,17 +188,19 @@ def _results(
             client.cancel(list(named))
 
 
-def check_here(wanted: Mapping[str, str]) -> None:
-    """On a worker: it has the versions that the work is recorded with.
+def document_here(text: str) -> dict[str, Any]:
+    """On a worker: the document, whose versions it has.
 
     Raises
     ------
     ClusterError:
         It has others: it came after the check.
     """
-    lines = _others(versions(), wanted)
+    document: dict[str, Any] = json.loads(text)
+    lines = _others(versions(), document["versions"])
     if lines:
         raise ClusterError(f"a worker has {', '.join(lines)}")
+    return document
 
 
 def _check_workers(client: Any, address: str, wanted: Mapping[str, str]) -> None:

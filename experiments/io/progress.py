@@ -10,24 +10,41 @@ from typing import NoReturn
 
 
 @contextmanager
-def stage_bar() -> Generator[Callable[[str, int, int], None]]:
-    """A callback (stage, done, total) that drives one bar per stage; silent when not a terminal."""
+def _bars(delay: float, one: bool) -> Generator[Callable[[str, int, int, str], None]]:
+    """A callback (stage, done, total, words) that drives a bar per stage, of which ``one`` stands.
+
+    Nothing is seen in the first ``delay`` seconds, [s], nor where no terminal is.
+    """
     from tqdm import tqdm
 
     bars: dict[str, tqdm[NoReturn]] = {}
 
-    def report(stage: str, done: int, total: int) -> None:
+    def close() -> None:
+        for bar in bars.values():
+            bar.close()
+
+    def report(stage: str, done: int, total: int, words: str) -> None:
         if stage not in bars:
+            if one:
+                close()
             bars[stage] = tqdm(
-                total=total, desc=stage, delay=2.0, leave=False, disable=None, file=sys.stderr
+                total=total, desc=stage, delay=delay, leave=False, disable=None, file=sys.stderr
             )
+        if words:
+            bars[stage].set_postfix_str(words, refresh=False)
         bars[stage].update(done - bars[stage].n)
 
     try:
         yield report
     finally:
-        for bar in bars.values():
-            bar.close()
+        close()
+
+
+@contextmanager
+def stage_bar() -> Generator[Callable[[str, int, int], None]]:
+    """A callback (stage, done, total) that drives one bar per stage; silent when not a terminal."""
+    with _bars(2.0, one=False) as report:
+        yield lambda stage, done, total: report(stage, done, total, "")
 
 
 _EVERY = 5.0
@@ -41,24 +58,10 @@ def search_bar() -> Generator[Callable[[str, int, int, float | None], None]]:
     One bar per stage on a terminal, else a plain line every five seconds.
     """
     if sys.stderr.isatty():
-        from tqdm import tqdm
-
-        bars: dict[str, tqdm[NoReturn]] = {}
-
-        def on_bar(stage: str, done: int, total: int, best: float | None) -> None:
-            if stage not in bars:
-                for bar in bars.values():
-                    bar.close()
-                bars[stage] = tqdm(total=total, desc=stage, leave=False, file=sys.stderr)
-            if best is not None:
-                bars[stage].set_postfix_str(f"best {best:.4f}, Ctrl-C keeps it", refresh=False)
-            bars[stage].update(done - bars[stage].n)
-
-        try:
-            yield on_bar
-        finally:
-            for bar in bars.values():
-                bar.close()
+        with _bars(0.0, one=True) as report:
+            yield lambda stage, done, total, best: report(
+                stage, done, total, "" if best is None else f"best {best:.4f}, Ctrl-C keeps it"
+            )
         return
     said = time.monotonic()
 

@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 import shapely
 
 from experiments.io.arrow_table import Table
+from experiments.io.parsed_file import parsed_file
 from experiments.io.versions import versions
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
@@ -234,14 +235,7 @@ def _grasp(grasp: dict[str, Any], sigma_0: float) -> GraspMinimum:
 
 
 def _document(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise RecordingError(f"{str(path)!r} is larger than {_LARGEST} bytes")
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordingError(f"{str(path)!r} cannot be read: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise RecordingError(f"{str(path)!r} is not JSON: {error}") from error
+    document = parsed_file(path, json.loads, "JSON", _LARGEST, RecordingError)
     found = document.get("format") if isinstance(document, dict) else None
     if found != "icage-replay/1":
         raise RecordingError(f"{str(path)!r} has format {found!r}; 'icage-replay/1' is needed")

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
+from experiments.io.parsed_file import parsed_file
 from experiments.study.inputs.distributions import LARGEST, Distribution
 from experiments.study.inputs.fields import HELP
 from experiments.study.inputs.fit_to_case import check_fits
@@ -119,14 +120,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     ConfigError:
         It cannot be read, is no TOML, or has a field that no study has.
     """
-    try:
-        if path.stat().st_size > _LARGEST_FILE:
-            raise ConfigError(f"{str(path)!r} is larger than {_LARGEST_FILE} bytes")
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{str(path)!r} cannot be read: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise ConfigError(f"{str(path)!r} is not TOML: {error}") from error
+    table: dict[str, Any] = parsed_file(path, tomllib.loads, "TOML", _LARGEST_FILE, ConfigError)
     for name in table:
         if name not in FIELDS:
             raise ConfigError(

@@ -5,13 +5,12 @@ It plans the cage once and sends tables back.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Generator, Mapping
 from functools import lru_cache
 from typing import Any
 
 from experiments.io.arrow_table import Table
-from experiments.io.cluster import Cluster, check_here
+from experiments.io.cluster import Cluster, document_here
 from experiments.study.run.document import study_of
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, Span, shard_table
@@ -25,12 +24,11 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     ClusterError:
         As ``experiments.io.cluster.Cluster``.
     """
-    cluster = Cluster(address, document["versions"])
-    text = json.dumps(document, sort_keys=True)
+    cluster = Cluster(address, document)
 
     def backend(study: Study, spans: list[Span]) -> Generator[tuple[Span, Table]]:
         if spans:
-            yield from cluster.run(run_remote, text, spans, _name)
+            yield from cluster.run(run_remote, spans, _name)
 
     return backend
 
@@ -47,6 +45,4 @@ def run_remote(text: str, span: Span) -> Table:
 @lru_cache(maxsize=4)
 def _study(text: str) -> Study:
     """The study, on a worker with the versions that it is recorded with."""
-    document = json.loads(text)
-    check_here(document["versions"])
-    return study_of(document)
+    return study_of(document_here(text))

@@ -1,0 +1,1 @@
+"""``icage grasps OUTLINE-OR-CASE``: the best target grasps of an object, or all of one hand."""

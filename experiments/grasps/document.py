@@ -1,0 +1,47 @@
+"""What ``icage grasps`` answers for one object: a document of format ``icage-grasps/1``."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any, Final
+
+from experiments.cases.free_gap import free_gap
+from icage.cage import Cage
+from icage.case import Case
+from icage.grasps.planned import PlannedGrasps, score
+from icage.grasps.wanted import Aim
+
+FORMAT: Final = "icage-grasps/1"
+
+
+def grasps_document(case: Case, planned: PlannedGrasps, args: Namespace) -> dict[str, Any]:
+    """The first ``args.top`` grasps and what came to nothing; lengths in the case's unit."""
+    best = zip(planned.cages[: args.top], planned.alike, strict=False)
+    return {
+        "format": FORMAT,
+        "name": case.name,
+        "unit": case.unit,
+        "outline": {"vertices": case.outline.vertices},
+        "finger_radius": case.finger_radius,
+        "aim": args.aim,
+        "grasps": [{**_entry(cage, args.aim), "alike": alike} for cage, alike in best],
+        "failed": [{"contacts": f.contacts, "why": f.why} for f in planned.failures],
+        "triples_left_out": planned.triples_left_out,
+        "searches_broken_off": planned.searches_broken_off,
+        "ended": planned.ended,
+    }
+
+
+def _entry(cage: Cage, aim: Aim) -> dict[str, Any]:
+    return {
+        "contacts": cage.contacts,
+        "phi_deg": cage.hand.phi_deg,
+        "sigma_0": cage.sigma_0,
+        "sigma_first": cage.sigma_first,
+        "sigma_max": cage.sigma_max,
+        "score": score(cage, aim),
+        "free_gap": free_gap(cage),
+        "verdict": cage.status,
+        "free_fingers": cage.grasps[0].free_fingers,
+        "escape_free_fingers": cage.punctures[-1].free_fingers if cage.sigma_max else None,
+    }

@@ -1,0 +1,37 @@
+"""The grasps that are asked for: the best of any hand, or all of one."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from experiments.cases.chosen import best_grasps_of
+from experiments.grasps.wanted_by_options import refuse_limits, wanted_of
+from icage.case import Case
+from icage.discs.offsets import offsets
+from icage.grasps.of_one_hand import grasps_of_hand
+from icage.grasps.planned import PlannedGrasps, planned_grasps_of_hand
+from icage.grasps.wanted import Aim
+from icage.hand import HandShape
+from icage.kernels.compiled import long_job
+
+
+def planned_grasps(case: Case, args: Namespace) -> PlannedGrasps:
+    """Grasps in the order in which they are listed, each planned.
+
+    Raises
+    ------
+    InputError:
+        The options fit neither a search nor one hand, or there is no such grasp.
+    """
+    if args.phi is not None and args.within is None:
+        refuse_limits(args)
+        long_job()
+        return _of_one_hand(case, case.finger_radius, args.phi, args.aim)
+    return best_grasps_of(case, args.top, wanted_of(args), args.seed, args.workers, args.seconds)
+
+
+def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
+    hand = HandShape.from_angles_deg(phi[0], phi[1])
+    grown = offsets(case.outline, radius, 8).inner if radius > 0.0 else case.outline
+    found = grasps_of_hand(grown, hand)
+    return planned_grasps_of_hand(case.outline, radius, hand, found, aim)

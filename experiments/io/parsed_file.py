@@ -1,0 +1,29 @@
+"""A file of a format that somebody may have got wrong, read in one go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from icage.errors import InputError
+
+
+def parsed_file(
+    path: Path, parse: Callable[[str], Any], kind: str, largest: int, error: type[InputError]
+) -> Any:
+    """What ``parse`` makes of a text of at most ``largest`` bytes; ``kind`` names its format.
+
+    Raises
+    ------
+    error:
+        It is larger, cannot be read, or is of no such format.
+    """
+    try:
+        if path.stat().st_size > largest:
+            raise error(f"{str(path)!r} is larger than {largest} bytes")
+        return parse(path.read_text(encoding="utf-8"))
+    except OSError as found:
+        raise error(f"{str(path)!r} cannot be read: {found.strerror}") from found
+    except (ValueError, RecursionError) as found:
+        raise error(f"{str(path)!r} is not {kind}: {found}") from found
