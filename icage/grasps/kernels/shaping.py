@@ -74,6 +74,8 @@ def shaped_points(features, triples, points, phi_1, phi_2, diameter):
             m, n, o = a * a + c * c + damp, a * b + c * d, b * b + d * d + damp
             u, v = -(a * here[0] + c * here[1]), -(b * here[0] + d * here[1])
             det = m * o - n * n
+            if not det > 0.0:  # three concave vertices: no contact moves with the point
+                break
             mx, my = (o * u - n * v) / det, (m * v - n * u) / det
             length = np.hypot(mx, my)
             share = min(1.0, _STRIDE * diameter / max(length, 1e-300))

@@ -141,6 +141,20 @@ def test_wrong_wishes_have_one_clear_error(wrong: dict[str, object]) -> None:
         Case("key", "mm", KEY).grasps(**wrong)  # type: ignore[arg-type]
 
 
+def test_a_wanted_shape_where_no_contact_can_move() -> None:
+    """Three fingers in concave vertices: the shape is what it is, wherever the forces meet."""
+    turn = np.arange(6) * np.pi / 3.0
+    ring = np.where(np.arange(6) % 2, 0.45, 1.0)[:, None] * np.column_stack(
+        [np.cos(turn), np.sin(turn)]
+    )
+    for phi, found in (((60.0, 120.0), True), ((70.0, 130.0), False)):
+        near = (*map(math.radians, phi), math.radians(4.0))
+        bench = GraspEvaluator(Outline(ring), 0.0, Wanted(near=near, corners=3, limits=ANY_HAND))
+        triples, points = bench.triples()
+        assert len(triples)
+        assert bool(len(bench.shaped(triples, points)[0])) == found
+
+
 # ------------------------------------------------------------------ stopped at any time
 
 
