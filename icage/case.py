@@ -48,6 +48,8 @@ class Case(Value):
         The files it was read from: the case file and, if it names one, the drawing.
     size_from:
         Where a drawing's size is from, in words; empty for anything else.
+    notes:
+        What a user must know about how a drawing was read, a sentence each.
 
     Raises
     ------
@@ -73,6 +75,7 @@ class Case(Value):
     target: FloatArray | None = None
     sources: tuple[Path, ...] = field(default=(), compare=False)
     size_from: str = field(default="", compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not 0 < len(self.name) <= MAX_NAME:  # pyright: ignore[reportUnnecessaryIsInstance]

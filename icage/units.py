@@ -7,3 +7,6 @@ from typing import Final, Literal, TypeAlias
 Unit: TypeAlias = Literal["m", "mm", "cm"]
 
 UNITS: Final[tuple[Unit, ...]] = ("m", "mm", "cm")
+
+METRES: Final[dict[Unit, float]] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
+"""[m] One of each."""

@@ -44,12 +44,14 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.cases.asked import size_words
     from icage.formats.case_json import FORMAT
+    from icage.formats.drawings.reading import Reading
     from icage.formats.json_out import write_json
     from icage.formats.load import read_drawing
 
     path = Path(args.drawing)
     check_output("--json", args.json, path)
-    case = read_drawing(path, args.width, args.unit, args.tolerance)
+    reading = Reading(width=args.width, unit=args.unit, tolerance=args.tolerance)
+    case = read_drawing(path, reading)
     outline = case.outline
     command = f"icage outline {path.name} --unit {case.unit}"
     for option in ("width", "tolerance"):

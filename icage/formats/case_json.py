@@ -13,6 +13,9 @@ from typing import Any, Final, cast
 
 from icage.case import MAX_NAME, Case
 from icage.errors import CaseError, FormatError, InputError
+from icage.formats.drawings.read import FORMATS as FORMATS_OF_DRAWINGS
+from icage.formats.drawings.read import is_drawing, trace_file
+from icage.formats.drawings.reading import Reading
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
 from icage.outline import MAX_VERTICES, Outline
@@ -178,17 +181,17 @@ def _parse_outline(
             return Outline(vertices), ()
     file = data["file"]
     if not isinstance(file, str) or not file or not file.isprintable():
-        raise CaseError(f"outline.file is {describe(file)}; the path of an SVG file is needed")
-    if not file.lower().endswith(".svg"):
-        raise CaseError(f"outline.file is {describe(file)}; a drawing *.svg is needed")
+        raise CaseError(f"outline.file is {describe(file)}; the path of a drawing is needed")
+    if not is_drawing(Path(file)):
+        kinds = ", *".join(FORMATS_OF_DRAWINGS)
+        raise CaseError(f"outline.file is {describe(file)}; a drawing (*{kinds}) is needed")
     width, tolerance = (
         a_number(data[key], f"outline.{key}") if key in data else None
         for key in ("width", "tolerance")
     )
-    from icage.formats.svg.outline import read_svg  # only now: a reader of its own
-
     with _told_with("outline"):
-        return read_svg(folder / file, width, tolerance, unit), (folder / file,)
+        reading = Reading(width=width, tolerance=tolerance, unit=unit)
+        return trace_file(folder / file, reading).outline, (folder / file,)
 
 
 @contextmanager

@@ -5,17 +5,18 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, Unpack
 
 from numpy.typing import ArrayLike
 
 from icage.cage import Cage
 from icage.case import Case
-from icage.checks import a_count, a_number, one_of
+from icage.checks import a_count
 from icage.errors import CaseError, InputError
 from icage.formats.case_json import has_grasp, parse_unit, read_case, read_object
+from icage.formats.drawings.read import is_drawing, trace_file
+from icage.formats.drawings.reading import Reading, ReadingOptions, option_of
 from icage.outline import Outline
-from icage.units import UNITS, Unit
 from models import case_paths, grasp_cases, object_names, outline_path
 
 UNNAMED: Final = "object"
@@ -25,33 +26,27 @@ UNNAMED: Final = "object"
 def load(
     source: str | os.PathLike[str] | Outline | ArrayLike,
     *,
-    width: float | None = None,
-    unit: Unit | None = None,
     finger_radius: float | None = None,
-    tolerance: float | None = None,
     grasp: int | None = None,
+    **reading: Unpack[ReadingOptions],
 ) -> Case:
     """The case that a file, a shipped name or an outline stands for, with its grasp if it has one.
 
     Parameters
     ----------
     source:
-        The path of a drawing (``*.svg``), of a case file with or without a grasp, of a plan or of
+        The path of a drawing, of a case file with or without a grasp, of a plan or of
         a list of grasps as ``icage plan`` and ``icage grasps`` write them with ``--json``; the name
         of a shipped object (``pliers``: its first grasp) or grasp (``pliers/1_best``), where no
         such file exists; or an ``Outline`` or its vertices (n, 2).
-    width:
-        [unit] Longer side of a drawing's bounding box; if None, the size that it states.
-    unit:
-        Unit of a drawing or of bare vertices; if None, the one in which the drawing states its
-        size, else m.
     finger_radius:
         [unit] Radius of the disc fingers; if None, what the file says, else 0: point fingers. A
         grasp belongs to its radius: with another one the case needs a grasp of its own.
-    tolerance:
-        [unit] Largest distance between a drawing and its polygon; 0.1 % of the width if None.
     grasp:
         Which grasp, from 1, of a list of grasps or of a shipped object; the first if None.
+    reading:
+        ``width``, ``unit``, ``tolerance`` and what else says how a drawing is to be read: the
+        fields of ``icage.formats.drawings.reading.Reading``. Bare vertices have a ``unit``.
 
     Raises
     ------
@@ -65,35 +60,28 @@ def load(
     >>> load([[0, 0], [4, 0], [0, 3]], unit="mm", finger_radius=0.1)
     <Case object: 3 vertices, 4 x 3 mm, finger radius 0.1 mm, no grasp yet>
     """
-    if width is not None:
-        a_number(width, "width")
-    if tolerance is not None:
-        a_number(tolerance, "tolerance")
+    how = reading_of(reading)
     if grasp is not None:
         a_count(grasp, "grasp", 0)
-    if unit is not None:
-        one_of(unit, UNITS, "unit")
     if isinstance(source, Case | Cage):
         raise InputError(f"load() was given a {type(source).__name__}, which needs no loading")
     if not isinstance(source, str | os.PathLike):
-        _refuse("bare vertices have their own size", width=width, tolerance=tolerance)
+        _for_drawings("bare vertices have their own size", how, allowed=("unit",))
         _refuse("bare vertices have no grasps", grasp=grasp)
         outline = source if isinstance(source, Outline) else Outline(source)
-        return Case(UNNAMED, parse_unit(unit or "m"), outline, finger_radius or 0.0)
+        return Case(UNNAMED, parse_unit(how.unit or "m"), outline, finger_radius or 0.0)
     found = named(os.fspath(source))
     path = found.outline
-    if _is_drawing(path):
+    if is_drawing(path):
         _refuse(f"{path} is a drawing and has no grasps", grasp=grasp)
-        case = read_drawing(path, width, unit, tolerance)
+        case = read_drawing(path, how)
     else:
-        _for_drawings(path, width, unit, tolerance)
+        _for_drawings(f"{path} has its own", how)
         case = _read(found, grasp)
     return case if finger_radius is None else _with_radius(case, finger_radius)
 
 
-def load_object(
-    source: str | os.PathLike[str], *, width: float | None = None, unit: Unit | None = None
-) -> Case:
+def load_object(source: str | os.PathLike[str], **reading: Unpack[ReadingOptions]) -> Case:
     """The object alone, as a case without a grasp, of all that ``load`` reads from files.
 
     Of a shipped object it is the outline, with no finger radius.
@@ -103,11 +91,27 @@ def load_object(
     InputError:
         As ``load``.
     """
+    how = reading_of(reading)
     path = named(os.fspath(source)).outline
-    if _is_drawing(path):
-        return read_drawing(path, width, unit)
-    _for_drawings(path, width, unit)
+    if is_drawing(path):
+        return read_drawing(path, how)
+    _for_drawings(f"{path} has its own", how)
     return read_object(path)
+
+
+def reading_of(options: ReadingOptions) -> Reading:
+    """The options as one value.
+
+    Raises
+    ------
+    InputError:
+        There is no such option, or its value is not allowed.
+    """
+    for name in options:
+        if name not in ReadingOptions.__annotations__:
+            known = ", ".join(ReadingOptions.__annotations__)
+            raise InputError(f"there is no option {name!r}; how a drawing is read: {known}")
+    return Reading(**options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,27 +155,16 @@ def named(text: str) -> Named:
     return Named(None, (path,), path)
 
 
-def read_drawing(
-    path: Path, width: float | None = None, unit: str | None = None, tolerance: float | None = None
-) -> Case:
+def read_drawing(path: Path, reading: Reading) -> Case:
     """The object of a drawing, lengths in ``unit``.
 
     Without a unit the answer is in the one in which the drawing states its size (mm in, mm out),
     and so is ``width``; in m where the drawing states none. ``size_from`` says which it was.
     """
-    from icage.formats.svg.outline import read_svg, stated_unit  # only now: a reader of its own
-
-    own = stated_unit(path)
-    measure = parse_unit(unit or own or "m")
-    outline = read_svg(path, width, tolerance, measure)
-    if width is None:
-        origin = f"from the file's own size, in {own}"
-    else:
-        origin = f"from --width {width:g} {measure}"
-        if unit is None:
-            why = "as in the file" if own else "the file states none"
-            origin += f" (no --unit given: {measure} is assumed, {why})"
-    return Case(path.stem, measure, outline, 0.0, None, (path,), origin)
+    found = trace_file(path, reading)
+    return Case(
+        path.stem, found.unit, found.outline, 0.0, None, (path,), found.size_from, found.notes
+    )
 
 
 def _read(found: Named, grasp: int | None) -> Case:
@@ -202,16 +195,12 @@ def _with_radius(case: Case, radius: float) -> Case:
     return replace(case, finger_radius=radius)
 
 
-def _is_drawing(path: Path) -> bool:
-    return path.suffix.lower() == ".svg"
-
-
-def _for_drawings(
-    path: Path, width: float | None, unit: str | None, tolerance: float | None = None
-) -> None:
-    if width is not None or unit is not None or tolerance is not None:
-        option = "--tolerance is" if width is unit is None else "--width and --unit are"
-        raise InputError(f"{option} for drawings (*.svg); {path} has its own")
+def _for_drawings(why: str, reading: Reading, allowed: tuple[str, ...] = ()) -> None:
+    """Refuse options that say how a drawing is read, for what is no drawing."""
+    given = [name for name in reading.given() if name not in allowed]
+    if given:
+        options = " and ".join(option_of(name) for name in given)
+        raise InputError(f"{options} {'is' if len(given) == 1 else 'are'} for drawings, but {why}")
 
 
 def _refuse(why: str, **options: float | None) -> None:

@@ -11,7 +11,8 @@ import shapely
 
 from experiments.cli import main
 from icage.formats.case_json import read_case, read_object
-from icage.formats.svg.outline import read_svg
+from icage.formats.drawings.read import trace_file
+from icage.formats.drawings.reading import Reading
 from models import case_path, case_paths, object_names, outline_path
 
 OBJECTS = object_names()
@@ -41,7 +42,8 @@ def test_the_outline_is_near_its_drawing(name: str):
     document = json.loads(outline_path(name).read_text())
     words = shlex.split(document["made_by"])
     width, tolerance = (float(words[words.index(key) + 1]) for key in ("--width", "--tolerance"))
-    drawing = read_svg(outline_path(name).parent / f"{name}.svg", width, 1e-5 * width)
+    path = outline_path(name).parent / f"{name}.svg"
+    drawing = trace_file(path, Reading(width=width, tolerance=1e-5 * width)).outline
     shipped = read_object(outline_path(name)).outline
     apart = shapely.hausdorff_distance(
         drawing.polygon.exterior, shipped.polygon.exterior, densify=0.05

@@ -11,8 +11,8 @@ from experiments.study.inputs.distributions import (
 )
 from experiments.study.inputs.variables import DEGREE, PAIRS, PERCENT, VARIABLES, Variable, own_unit
 from icage.errors import InputError
+from icage.units import METRES
 
-_LENGTHS: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 _ANGLES: Final = {"": 1.0, "rad": 1.0, "deg": DEGREE}
 
 _ROUNDING: Final = 1e-12
@@ -76,8 +76,8 @@ def _converted(one: Variable, number: float, suffix: str, unit: str, diameter: f
             return PERCENT * number * diameter
         if suffix == "":
             return number
-        if suffix in _LENGTHS:
-            return number * _LENGTHS[suffix] / _LENGTHS[unit]
+        if suffix in METRES:
+            return number * METRES[suffix] / METRES[unit]
         allowed = "mm, cm, m or % (of the diameter)"
     elif one.measure == "angle":
         if suffix in _ANGLES:

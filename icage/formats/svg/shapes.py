@@ -18,8 +18,8 @@ import svgelements as svg
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
-from icage.formats.svg.curves import Bezier, Curve, EllipseArc
-from icage.formats.svg.fill import FillRule
+from icage.formats.drawings.curves import Bezier, Curve, EllipseArc
+from icage.formats.drawings.fill import FillRule
 
 Ring = list[Curve]
 Shape = tuple[FillRule, list[Ring]]

@@ -8,8 +8,10 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from icage.formats.svg.outline import read_svg
+from icage.formats.drawings.read import trace_file
+from icage.formats.drawings.reading import Reading
 from icage.outline import Outline
+from icage.units import Unit
 
 
 def drawing(body: str, attributes: str = "") -> str:
@@ -23,6 +25,13 @@ def read(
     path = folder / "drawing.svg"
     path.write_text(drawing(body, **kwargs), encoding="utf-8")
     return read_svg(path, width, tolerance)
+
+
+def read_svg(
+    path: Path, width: float | None = None, tolerance: float | None = None, unit: Unit | None = "m"
+) -> Outline:
+    """The outline of a drawing in a file."""
+    return trace_file(path, Reading(width=width, tolerance=tolerance, unit=unit)).outline
 
 
 def placed(points: ArrayLike, width: float) -> np.ndarray:

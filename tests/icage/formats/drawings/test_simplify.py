@@ -5,7 +5,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icage.formats.svg.simplify import simplified
+from icage.formats.drawings.simplify import simplified
 
 
 def blob(seed: int, n: int) -> np.ndarray:

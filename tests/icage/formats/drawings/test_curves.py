@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icage.errors import FormatError
-from icage.formats.svg.curves import Bezier, EllipseArc, flatten
+from icage.formats.drawings.curves import Bezier, EllipseArc, flatten
 
 number = st.floats(-10, 10).map(lambda x: round(x, 9))  # GEOS divides by subnormal lengths
 point = st.tuples(number, number)

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icage.formats.svg.fill import filled
+from icage.formats.drawings.fill import filled
 
 OUTER = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
 INNER = np.array([[1.0, 1], [3, 1], [3, 3], [1, 3]])

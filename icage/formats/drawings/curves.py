@@ -108,6 +108,28 @@ class EllipseArc:
         return [zero for zero in zeros if 0.0 < zero < 1.0]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Polyline:
+    """Straight edges through points (k, 2), k at least 2: what meshes, images and maps hold."""
+
+    points: FloatArray
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Points (k, 2), every edge in an equal share of the parameter."""
+        place = np.asarray(t) * (len(self.points) - 1)
+        before = np.clip(place.astype(np.int64), 0, len(self.points) - 2)
+        share = (place - before)[:, None]
+        return (1.0 - share) * self.points[before] + share * self.points[before + 1]
+
+    def bend(self) -> float:
+        """None between its points, and they are all kept."""
+        return 0.0
+
+    def turns(self) -> list[float]:
+        """The parameters of all points between the ends."""
+        return (np.arange(1, len(self.points) - 1) / (len(self.points) - 1)).tolist()
+
+
 def flatten(curve: Curve, within: float) -> FloatArray:
     """Points (k, 2) of a polyline at most ``within`` from the curve, both ends included.
 
@@ -123,6 +145,8 @@ def flatten(curve: Curve, within: float) -> FloatArray:
     >>> bool(1 - np.hypot(*middles.T).min() <= 1e-3)
     True
     """
+    if isinstance(curve, Polyline):
+        return curve.points
     bend = curve.bend()
     chords = math.ceil(math.sqrt(bend / (8.0 * within))) if bend > 0.0 else 1
     if chords > MAX_CHORDS:

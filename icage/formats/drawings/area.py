@@ -1,0 +1,115 @@
+"""The area of shapes, and the area that lines enclose, as polygons. Our own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from icage.arrays import FloatArray
+from icage.errors import FormatError
+from icage.formats.drawings.curves import flatten
+from icage.formats.drawings.drawing import Line, Ring, Shape
+from icage.formats.drawings.fill import filled
+
+MAX_POINTS: Final = 200_000
+"""Vertices of the flattened drawing."""
+
+
+def points_of(chain: Ring, within: float) -> FloatArray:
+    """(k, 2) = the chain as a polyline at most ``within`` from it, both ends included."""
+    flat = [flatten(curve, within) for curve in chain]
+    return np.vstack([*(piece[:-1] for piece in flat), flat[-1][-1:]])
+
+
+def area_of(shape: Shape, within: float) -> shapely.Geometry:
+    """What a shape fills, after its clips; its boundary is at most ``within`` from the true one.
+
+    Raises
+    ------
+    FormatError:
+        Too many points.
+    """
+    rings = [points_of(ring, within)[:-1] for ring in shape.rings]
+    check_points(sum(len(ring) for ring in rings))
+    area = filled(rings, shape.rule)
+    return _clipped(area, shape.clips, within)
+
+
+def drawn_area(line: Line, within: float) -> shapely.Geometry:
+    """What the drawn width of a line covers, after its clips."""
+    points = points_of(line.chain, within)
+    closed = bool((points[0] == points[-1]).all()) and len(points) > 3
+    path = shapely.LinearRing(points) if closed else shapely.LineString(points)
+    radius = line.width / 2.0
+    if radius <= 0.0:
+        return shapely.Polygon()
+    # A quarter of a circle in chords of at most ``within``: 1 - cos(a/2) = within / radius.
+    segments = int(np.ceil(np.pi / 4.0 / np.arccos(max(0.0, 1.0 - min(1.0, within / radius)))))
+    area = shapely.buffer(
+        path, radius, quad_segs=min(max(segments, 4), 400),
+        cap_style=line.cap, join_style=line.join, mitre_limit=line.mitre_limit,
+    )  # fmt: skip
+    return _clipped(area, line.clips, within)
+
+
+def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:
+    """What lines enclose together: every point that cannot get away without crossing one.
+
+    Ends of lines nearer to each other than ``gap`` are one point, the middle of them.
+
+    Raises
+    ------
+    FormatError:
+        Too many points.
+    """
+    paths = [points_of(line.chain, within) for line in lines]
+    check_points(sum(len(path) for path in paths))
+    paths = [path for path in _joined(paths, gap) if len(path) > 1]
+    if not paths:
+        return shapely.Polygon()
+    edges = shapely.union_all([shapely.LineString(path) for path in paths])
+    return shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(edges))))
+
+
+def check_points(count: int) -> None:
+    """Refuse more than ``MAX_POINTS``."""
+    if count > MAX_POINTS:
+        raise FormatError(
+            f"the flattened drawing has more than {MAX_POINTS} points; give a larger tolerance"
+        )
+
+
+def _clipped(
+    area: shapely.Geometry, clips: Sequence[Sequence[Shape]], within: float
+) -> shapely.Geometry:
+    for clip in clips:
+        area = shapely.intersection(
+            area, shapely.union_all([area_of(shape, within) for shape in clip])
+        )
+    return area
+
+
+def _joined(paths: list[FloatArray], gap: float) -> list[FloatArray]:
+    """The paths with the ends of each cluster at one point; a closed path stays as it is."""
+    loose = [k for k, path in enumerate(paths) if not (path[0] == path[-1]).all()]
+    if not loose:
+        return paths
+    ends = np.vstack([paths[k][[0, -1]] for k in loose])
+    pairs = KDTree(ends).query_pairs(gap, output_type="ndarray")
+    ones = np.ones(len(pairs))
+    graph = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
+    count, cluster = connected_components(graph, directed=False)
+    middle = np.zeros((count, 2))
+    np.add.at(middle, cluster, ends)
+    middle /= np.bincount(cluster)[:, None]
+    moved = list(paths)
+    for row, k in enumerate(loose):
+        moved[k] = paths[k].copy()
+        moved[k][[0, -1]] = middle[cluster[[2 * row, 2 * row + 1]]]
+    return moved

@@ -1,0 +1,247 @@
+"""Which area of a drawing is the object: background, parts that touch, the part that is picked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import shapely
+
+from icage.errors import FormatError
+from icage.formats.drawings.area import area_of, drawn_area, enclosed
+from icage.formats.drawings.drawing import Drawing, Line, Shape
+from icage.formats.drawings.reading import BY_ID, LARGEST, Reading
+from icage.outline import LARGEST_COORDINATE
+
+FLATTEN: Final = 0.02
+"""[tolerance] Share of flattening: small, since it also moves the crossings of shapes."""
+
+_RECTANGLE: Final = 1.0 - 1e-9
+"""Share of its bounding box that a rectangle covers."""
+
+_SHOWN: Final = 6
+"""Names or areas told at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """The object's area in the file's lengths, and what is to be said about it."""
+
+    area: shapely.Polygon
+    notes: tuple[str, ...]
+
+
+def shapes_meant(drawing: Drawing, reading: Reading) -> Drawing:
+    """The drawing with only those shapes and lines whose name is picked.
+
+    Raises
+    ------
+    FormatError:
+        Nothing has the name.
+    """
+    if not isinstance(reading.pick, str) or not reading.pick.startswith(BY_ID):
+        return drawing
+    name = reading.pick[len(BY_ID) :]
+    shapes = tuple(shape for shape in drawing.shapes if name in shape.names)
+    lines = tuple(line for line in drawing.lines if name in line.names)
+    if not shapes and not lines:
+        names = dict.fromkeys(n for one in (*drawing.shapes, *drawing.lines) for n in one.names)
+        has = ", ".join(repr(n) for n in list(names)[:_SHOWN])
+        more = ", ..." if len(names) > _SHOWN else ""
+        raise FormatError(
+            f"nothing that is drawn has the id {name!r}; "
+            + (f"the drawing has {has}{more}" if names else "the drawing has no ids")
+        )
+    return replace(drawing, shapes=shapes, lines=lines)
+
+
+def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float) -> Part:
+    """The one area that is the object, without holes. ``tolerance`` and ``gap`` as in the file.
+
+    Parts nearer to each other than the tolerance are one; parts smaller than it are dust.
+
+    Raises
+    ------
+    FormatError:
+        Nothing has an area, or there are several parts and none is picked.
+    """
+    if tolerance <= 0.0:
+        raise FormatError("the drawing has no area")
+    notes: list[str] = []
+    within = FLATTEN * tolerance
+    areas = [area_of(shape, within) for shape in drawing.shapes]
+    areas, said = _without_background(areas, drawing, reading)
+    notes += said
+    areas += _of_lines(drawing, reading, within, gap)
+    whole = _polygons(shapely.union_all(areas))
+    parts = [part for part in _joined(whole, tolerance) if size(part) > tolerance]
+    if not parts:
+        raise FormatError("the filled shapes have no area")
+    parts.sort(key=lambda part: (-part.area, part.bounds))
+    picked, said = _picked(parts, reading)
+    notes += said
+    return Part(shapely.Polygon(picked.exterior), (*notes, *_holes(picked, tolerance)))
+
+
+def size(area: shapely.Geometry) -> float:
+    """Longer side of the bounding box."""
+    x_low, y_low, x_high, y_high = shapely.bounds(area)
+    return float(max(x_high - x_low, y_high - y_low))
+
+
+def lines_count(drawing: Drawing, reading: Reading) -> bool:
+    """Whether lines are part of the object."""
+    strokes = reading.strokes or ("outline" if drawing.edges else "ignore")
+    return bool(drawing.lines) and strokes != "ignore"
+
+
+def check_painted(drawing: Drawing, reading: Reading) -> None:
+    """Refuse a drawing in which nothing is filled, with the option that helps.
+
+    Raises
+    ------
+    FormatError:
+        Nothing counts.
+    """
+    if drawing.shapes or lines_count(drawing, reading):
+        return
+    if drawing.lines:
+        raise FormatError("the drawing has strokes only: try --strokes outline")
+    raise FormatError("nothing in the drawing is filled; a filled shape is needed")
+
+
+def _of_lines(
+    drawing: Drawing, reading: Reading, within: float, gap: float
+) -> list[shapely.Geometry]:
+    """The areas that lines enclose and, if asked for, that their drawn width covers."""
+    if not lines_count(drawing, reading):
+        return []
+    areas = [enclosed(drawing.lines, within, gap)]
+    if reading.strokes == "drawn":
+        areas += [drawn_area(line, within) for line in drawing.lines]
+    elif shapely.is_empty(areas[0]) and not drawing.shapes:
+        raise FormatError(
+            f"the {len(drawing.lines)} lines of the drawing enclose no area; where their ends do "
+            f"not meet, --gap G joins ends nearer than G ({gap:.3g} units of the file now)"
+        )
+    return areas
+
+
+def _without_background(
+    areas: list[shapely.Geometry], drawing: Drawing, reading: Reading
+) -> tuple[list[shapely.Geometry], list[str]]:
+    """Leave out or tell about a rectangle (or whatever fills the page) that covers all others."""
+    kept = list(areas)
+    notes: list[str] = []
+    while len(kept) > 1:
+        largest = max(range(len(kept)), key=lambda k: float(shapely.area(kept[k])))
+        others = [
+            area for k, area in enumerate(kept) if k != largest and not shapely.is_empty(area)
+        ]
+        back = kept[largest]
+        if not others or not _fills_frame(back, drawing.frame):
+            break
+        if not shapely.covers(back, shapely.union_all(others)):
+            break
+        if all(shapely.equals(other, back) for other in others):
+            break
+        if reading.background is not False:
+            notes.append(
+                "one shape covers all others and is the outline; if it is the background, "
+                "--no-background leaves it out"
+            )
+            break
+        del kept[largest]
+        notes.append("a background that covers all other shapes was left out")
+    return kept, notes
+
+
+def _fills_frame(area: shapely.Geometry, frame: tuple[float, float, float, float] | None) -> bool:
+    """Whether an area is a rectangle, or its bounding box is that of the page (or holds it)."""
+    if shapely.is_empty(area):
+        return False
+    x_low, y_low, x_high, y_high = shapely.bounds(area)
+    if shapely.area(area) >= _RECTANGLE * (x_high - x_low) * (y_high - y_low):
+        return True
+    if frame is None:
+        return False
+    slack = 0.01 * max(frame[2] - frame[0], frame[3] - frame[1])
+    return (
+        x_low <= frame[0] + slack
+        and y_low <= frame[1] + slack
+        and x_high >= frame[2] - slack
+        and y_high >= frame[3] - slack
+    )
+
+
+def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Polygon]:
+    """Parts nearer to each other than the tolerance are one: closed by half of it, then opened."""
+    if len(parts) < 2:
+        return parts
+    half = tolerance / 2.0
+    grown = _polygons(shapely.union_all(shapely.buffer(parts, half, join_style="mitre")))
+    if len(grown) == len(parts):
+        return parts
+    tree = shapely.STRtree(parts)
+    joined: list[shapely.Polygon] = []
+    for one in grown:
+        members = [parts[k] for k in tree.query(one, predicate="intersects")]
+        if len(members) == 1:
+            joined += members
+        else:
+            closed = shapely.buffer(one, -half, join_style="mitre")
+            joined += _polygons(shapely.union_all([closed, *members]))
+    return joined
+
+
+def _picked(
+    parts: Sequence[shapely.Polygon], reading: Reading
+) -> tuple[shapely.Polygon, list[str]]:
+    if len(parts) == 1:
+        if isinstance(reading.pick, int) and reading.pick > 1:
+            raise FormatError(f"pick is {reading.pick}; the drawing has one part")
+        return parts[0], []
+    areas = [part.area for part in parts]
+    shares = ", ".join(f"{100 * area / sum(areas):.3g} %" for area in areas[:_SHOWN])
+    more = ", ..." if len(areas) > _SHOWN else ""
+    told = f"{len(parts)} separate filled parts (areas {shares}{more})"
+    if reading.pick == LARGEST:
+        return parts[0], [f"of {told} the largest was taken"]
+    if isinstance(reading.pick, int):
+        if reading.pick > len(parts):
+            raise FormatError(f"pick is {reading.pick}; the drawing has {told}")
+        return parts[reading.pick - 1], [f"of {told} number {reading.pick} was taken"]
+    raise FormatError(
+        f"the drawing has {told}; one connected silhouette is needed: "
+        "--pick largest, --pick 1 to take them by area, or --pick id=NAME"
+    )
+
+
+def _holes(part: shapely.Polygon, tolerance: float) -> list[str]:
+    """Contours inside the outline do not hold the object from outside."""
+    holes = [hole for hole in part.interiors if size(hole) > tolerance]
+    if not holes:
+        return []
+    count = "a hole" if len(holes) == 1 else f"{len(holes)} holes"
+    return [f"{count} inside the outline left out: the fingers stay outside, the outer ring counts"]
+
+
+def _polygons(region: shapely.Geometry) -> list[shapely.Polygon]:
+    parts = shapely.get_parts(region)
+    return [part for part in parts if isinstance(part, shapely.Polygon) and not part.is_empty]
+
+
+def corners_of(pieces: Sequence[Shape | Line]) -> shapely.MultiPoint:
+    """Ends and turning points of all curves: they have the bounding box of the drawing."""
+    chains = [
+        chain for one in pieces for chain in (one.rings if isinstance(one, Shape) else (one.chain,))
+    ]
+    points = [curve.at(np.array([0.0, *curve.turns(), 1.0])) for chain in chains for curve in chain]
+    corners = np.vstack(points) if points else np.zeros((0, 2))
+    if not np.isfinite(corners).all() or np.abs(corners).max(initial=0.0) > LARGEST_COORDINATE:
+        raise FormatError(
+            f"the drawing has coordinates that are not finite or beyond {LARGEST_COORDINATE:g}"
+        )
+    return shapely.MultiPoint(corners)
