@@ -21,6 +21,7 @@ from icage.units import UNITS, Unit
 from icage.values import Value
 
 if TYPE_CHECKING:
+    from icage.formats.drawings.reading import Reading
     from icage.grasps.wanted import HandLimits
 
 MAX_NAME: Final = 100
@@ -50,6 +51,8 @@ class Case(Value):
         Where a drawing's size is from, in words; empty for anything else.
     notes:
         What a user must know about how a drawing was read, a sentence each.
+    reading:
+        How the drawing was read; None for what is no drawing.
 
     Raises
     ------
@@ -76,6 +79,7 @@ class Case(Value):
     sources: tuple[Path, ...] = field(default=(), compare=False)
     size_from: str = field(default="", compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
+    reading: Reading | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not 0 < len(self.name) <= MAX_NAME:  # pyright: ignore[reportUnnecessaryIsInstance]

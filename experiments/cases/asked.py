@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from experiments.io.options import UNITS, count, file_name, not_negative, positive
+from experiments.cases.reading import add_reading, reading_of, say_notes
+from experiments.io.options import count, file_name, not_negative
 
 if TYPE_CHECKING:
     from icage.case import Case
 
 CASE_HELP = (
-    "case file, plan or list of grasps, or a shipped object's name; or a drawing (*.svg) or an "
+    "case file, plan or list of grasps, or a shipped object's name; or a drawing, or an "
     "outline without a grasp, for which the best grasp is searched"
 )
 
@@ -23,8 +24,8 @@ def add_case(parser: argparse.ArgumentParser) -> None:
 
 
 def add_case_options(parser: argparse.ArgumentParser, grasp: bool = True) -> None:
-    """``--width --unit --finger-radius``, and ``--grasp`` unless the command has its own."""
-    add_size(parser)
+    """How a drawing is read, ``--finger-radius`` and ``--grasp`` unless the command has its own."""
+    add_reading(parser)
     parser.add_argument(
         "--finger-radius", metavar="R", type=not_negative,
         help="radius of the disc fingers, for a drawing or an outline without a grasp, in its unit "
@@ -37,21 +38,10 @@ def add_case_options(parser: argparse.ArgumentParser, grasp: bool = True) -> Non
         )  # fmt: skip
 
 
-def add_size(parser: argparse.ArgumentParser) -> None:
-    """``--width W --unit U`` of a drawing."""
-    parser.add_argument(
-        "--width", type=positive, metavar="W",
-        help="longer side of a drawing, in UNIT (the size the drawing states, if any)",
-    )  # fmt: skip
-    parser.add_argument(
-        "--unit", choices=UNITS,
-        help="unit of a drawing's width and of the answer (the one in which the drawing states "
-        "its size; m if it states none)",
-    )  # fmt: skip
-
-
 def case_of(args: argparse.Namespace) -> Case:
-    """What the command names. It may have no grasp yet: ``chosen`` finds one, after all checks.
+    """What the command names, with its warnings said.
+
+    It may have no grasp yet: ``chosen`` finds one, after all checks.
 
     Raises
     ------
@@ -60,10 +50,11 @@ def case_of(args: argparse.Namespace) -> Case:
     """
     from icage.formats.load import load
 
-    return load(
-        args.case, width=args.width, unit=args.unit, finger_radius=args.finger_radius,
-        grasp=args.grasp,
-    )  # fmt: skip
+    case = load(
+        args.case, finger_radius=args.finger_radius, grasp=args.grasp, **reading_of(args).given()
+    )
+    say_notes(case)
+    return case
 
 
 def size_words(thing: Case) -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from experiments.cases.asked import size_words
+from experiments.cases.reading import reading_of, reading_words
 from experiments.io.progress import search_bar
 from icage.cage import Cage
 from icage.case import Case
@@ -59,7 +60,9 @@ def chosen(case: Case, args: argparse.Namespace, count: int = 1) -> Chosen:
     from icage.grasps.wanted import Wanted
 
     check_radius(case)
-    found = best_grasps_of(case, max(SEARCHED, count), Wanted("first"))
+    found = best_grasps_of(
+        case, max(SEARCHED, count), Wanted("first", tolerance=args.tolerance or 0.0)
+    )
     cages = found.cages[:count]
     if not cages:
         raise InputError(f"{case.name}: none of {found.compared} grasps compared is a cage")
@@ -121,10 +124,7 @@ def cases_from(case: Case, cages: tuple[Cage, ...]) -> tuple[Case, ...]:
 def search_command(case: Case, args: argparse.Namespace, source: str) -> str:
     """``icage grasps`` for the same object and fingers."""
     words = ["icage", "grasps", source]
-    if args.width is not None:
-        words += ["--width", f"{args.width!r}"]
-    if args.unit is not None:
-        words += ["--unit", args.unit]
+    words += reading_words(reading_of(args))
     if case.finger_radius > 0.0:
         words += ["--finger-radius", f"{case.finger_radius!r}"]
     return shlex.join(words)

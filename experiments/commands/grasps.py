@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.cases.asked import add_size
+from experiments.cases.reading import add_reading
 from experiments.io.options import add_json, count, file_name, not_negative, number, positive
 from experiments.io.options import seed as seed_option
 
@@ -59,7 +59,7 @@ def add_parser(subparsers: Any) -> None:
         help="radius of the disc "
         "fingers, in the object's unit (the case's own, else 0: point fingers)",
     )
-    add_size(parser)
+    add_reading(parser, tolerance=False)
     parser.add_argument(
         "--phi",
         type=number,
@@ -134,8 +134,8 @@ def add_parser(subparsers: Any) -> None:
         "--tolerance",
         type=not_negative,
         metavar="T",
-        help="how wrong the drawing may be, in its unit: smaller or shallower grasps are left out "
-        "(0)",
+        help="how wrong the drawing may be, in its unit: it is read within T (0.1 %% of the "
+        "width), and smaller or shallower grasps are left out (0)",
     )
     parser.add_argument(
         "--seconds",

@@ -33,6 +33,12 @@ def add_parser(subparsers: Any) -> None:
         "and exit with 1 if a level differs by more than 1e-7",
     )
     parser.add_argument(
+        "--bracket",
+        action="store_true",
+        help="of a drawing: plan the grasp on an outline inside the drawing and on one around it, "
+        "too; the drawing's own sigma_max lies between theirs",
+    )
+    parser.add_argument(
         "--no-tunnels",
         action="store_true",
         help="with --method contact-space: leave out the tunnel edges of Sec. V-B; unsafe, to show "
@@ -44,7 +50,9 @@ def run(args: argparse.Namespace) -> int:
     """Plan, then write what was asked for."""
     from pathlib import Path
 
+    from icage.bracket import bracket
     from icage.errors import InputError
+    from icage.formats.bracket_json import bracket_document, bracket_summary
     from icage.formats.json_out import json_text, write_json
     from icage.formats.plan_json import plan_document, plan_summary
 
@@ -57,6 +65,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--json and --figure both name {args.json!r}")
     if args.no_tunnels and args.method != "contact-space":
         raise InputError("--no-tunnels goes with --method contact-space only")
+    if args.bracket and case.reading is None:
+        raise InputError(f"--bracket is for drawings; the outline of {case.name} is exact")
     from experiments.cases.by_methods import planned
     from experiments.cases.chosen import chosen, say_how_to_keep
 
@@ -67,9 +77,12 @@ def run(args: argparse.Namespace) -> int:
     answer = planned(case, args.method, tunnels=not args.no_tunnels)
     for line in answer.disagreements:
         print(f"icage: the methods disagree: {line}", file=sys.stderr)
+    bounds = bracket(case) if args.bracket else None
     document: dict[str, Any] = {}
     if args.json is not None:
         document = plan_document(answer.cage, answer.regions(), case.name, case.unit)
+        if bounds is not None:
+            document["bracket"] = bracket_document(bounds)
         json_text(document)  # a number that cannot be written fails before any file appears
     if args.figure is not None:
         from experiments.figures.plan import draw_plan, figure_regions
@@ -80,6 +93,8 @@ def run(args: argparse.Namespace) -> int:
         write_json(document, args.json)
     if args.json != "-":
         print("\n".join(plan_summary(answer.cage, case.name, case.unit)))
+        if bounds is not None:
+            print("\n".join(bracket_summary(bounds, case.unit)))
         if args.method == "both" and not answer.disagreements:
             print("methods      cells and contact space agree to 1e-7")
     return 1 if answer.disagreements else 0

@@ -8,11 +8,13 @@ from pathlib import Path
 
 from experiments.cases.case_files import LISTED, check_case_files
 from experiments.cases.chosen import SEARCHED, check_radius
+from experiments.cases.reading import reading_of, say_notes
 from experiments.io.options import check_output
 from icage.case import Case
 from icage.errors import InputError
+from icage.formats.drawings.read import is_drawing
 from icage.formats.json_out import write_json
-from icage.formats.load import load_object
+from icage.formats.load import load_object, named
 
 
 def list_grasps(args: Namespace) -> None:
@@ -50,7 +52,9 @@ def list_grasps(args: Namespace) -> None:
 
 def _checked(args: Namespace) -> Case:
     """The object, once everything that can be checked before the search was."""
-    case = load_object(args.object, width=args.width, unit=args.unit)
+    of_drawing = is_drawing(named(args.object).outline) and args.tolerance != 0.0
+    case = load_object(args.object, **reading_of(args, tolerance=of_drawing).given())
+    say_notes(case)
     check_output("--json", args.json, *case.sources)
     if args.finger_radius is not None:
         case = replace(case, finger_radius=args.finger_radius)

@@ -15,7 +15,7 @@ from icage.case import MAX_NAME, Case
 from icage.errors import CaseError, FormatError, InputError
 from icage.formats.drawings.read import FORMATS as FORMATS_OF_DRAWINGS
 from icage.formats.drawings.read import is_drawing, trace_file
-from icage.formats.drawings.reading import Reading
+from icage.formats.drawings.reading import Reading, ReadingOptions
 from icage.formats.files import read_bytes
 from icage.formats.json_text import a_number, an_object, describe, parse_json, points, required
 from icage.outline import MAX_VERTICES, Outline
@@ -152,13 +152,21 @@ def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] =
             f"name is {describe(name)}; a printable string of 1 to {MAX_NAME} characters is needed"
         )
     unit = parse_unit(case.get("unit", "m"))
-    outline, drawings = _parse_outline(
-        an_object(required(case, "outline", "the case"), "outline"), folder, unit
-    )
+    place = an_object(required(case, "outline", "the case"), "outline")
+    drawing, reading = _drawing_of(place, folder, unit)
     finger_radius = a_number(case.get("finger_radius", 0.0), "finger_radius")
     if finger_radius < 0.0:
         raise CaseError(f"finger_radius is {finger_radius:g}; 0 or more is needed")
-    return Case(name, unit, outline, finger_radius, None, sources + drawings)
+    if drawing is None or reading is None:
+        vertices = points(place["vertices"], "outline.vertices", most=MAX_VERTICES)
+        with _told_with("outline.vertices"):
+            return Case(name, unit, Outline(vertices), finger_radius, None, sources)
+    with _told_with("outline"):
+        found = trace_file(drawing, reading)
+    return Case(
+        name, unit, found.outline, finger_radius, None, (*sources, drawing), found.size_from,
+        found.notes, reading,
+    )  # fmt: skip
 
 
 def parse_unit(value: object) -> Unit:
@@ -168,30 +176,34 @@ def parse_unit(value: object) -> Unit:
     return value
 
 
-def _parse_outline(
+_NUMBERS: Final = ("width", "tolerance", "gap", "section", "threshold")
+"""Keys of ``outline`` that are numbers."""
+
+
+def _drawing_of(
     data: dict[str, Any], folder: Path, unit: Unit
-) -> tuple[Outline, tuple[Path, ...]]:
-    """The outline, and the drawing it was read from if there is one."""
+) -> tuple[Path | None, Reading | None]:
+    """The drawing that the outline is read from, and how; None where it has vertices."""
     if ("vertices" in data) == ("file" in data):
         have = "both" if "vertices" in data else "neither"
         raise CaseError(f"outline has {have} of the keys 'vertices' and 'file'; one is needed")
     if "vertices" in data:
-        vertices = points(data["vertices"], "outline.vertices", most=MAX_VERTICES)
-        with _told_with("outline.vertices"):
-            return Outline(vertices), ()
+        return None, None
     file = data["file"]
     if not isinstance(file, str) or not file or not file.isprintable():
         raise CaseError(f"outline.file is {describe(file)}; the path of a drawing is needed")
     if not is_drawing(Path(file)):
         kinds = ", *".join(FORMATS_OF_DRAWINGS)
         raise CaseError(f"outline.file is {describe(file)}; a drawing (*{kinds}) is needed")
-    width, tolerance = (
-        a_number(data[key], f"outline.{key}") if key in data else None
-        for key in ("width", "tolerance")
-    )
+    options: dict[str, Any] = {
+        key: a_number(data[key], f"outline.{key}") if key in _NUMBERS else data[key]
+        for key in ReadingOptions.__annotations__
+        if key in data and key != "unit"  # the case's unit is the outline's
+    }
+    if isinstance(options.get("layers"), list):
+        options["layers"] = tuple(options["layers"])
     with _told_with("outline"):
-        reading = Reading(width=width, tolerance=tolerance, unit=unit)
-        return trace_file(folder / file, reading).outline, (folder / file,)
+        return folder / file, Reading(unit=unit, **options)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Unpack
+from typing import TYPE_CHECKING, Final, Unpack
 
 from numpy.typing import ArrayLike
 
@@ -18,6 +18,9 @@ from icage.formats.drawings.read import is_drawing, trace_file
 from icage.formats.drawings.reading import Reading, ReadingOptions, option_of
 from icage.outline import Outline
 from models import case_paths, grasp_cases, object_names, outline_path
+
+if TYPE_CHECKING:
+    from icage.formats.drawings.trace import Traced
 
 UNNAMED: Final = "object"
 """Name of a case made from bare vertices."""
@@ -161,10 +164,15 @@ def read_drawing(path: Path, reading: Reading) -> Case:
     Without a unit the answer is in the one in which the drawing states its size (mm in, mm out),
     and so is ``width``; in m where the drawing states none. ``size_from`` says which it was.
     """
-    found = trace_file(path, reading)
+    return case_of(path, reading, trace_file(path, reading))
+
+
+def case_of(path: Path, reading: Reading, found: Traced) -> Case:
+    """The object of a drawing that was traced, named after its file."""
     return Case(
-        path.stem, found.unit, found.outline, 0.0, None, (path,), found.size_from, found.notes
-    )
+        path.stem, found.unit, found.outline, 0.0, None, (path,), found.size_from, found.notes,
+        reading,
+    )  # fmt: skip
 
 
 def _read(found: Named, grasp: int | None) -> Case:

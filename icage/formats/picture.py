@@ -15,6 +15,7 @@ import shapely
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.case import Case
+from icage.outline import Outline
 
 WIDTH: Final = 480.0
 """[px] Longer side of the drawing."""
@@ -93,6 +94,16 @@ def way_out_picture(cage: Cage, width: float = WIDTH) -> str:
     body += _hand(sheet, ways[-1], cage.finger_radius, OUT, solid=True)
     top, unit = path[: free + 1, 3].max(), f" {cage.unit}" if cage.unit else ""
     return sheet.svg(body, [f"the way out opens at sigma {top:.6g}{unit} (dashed); red: free"])
+
+
+def outline_picture(outline: Outline, source: shapely.Polygon, width: float = WIDTH) -> str:
+    """What a drawing shows (grey), and over it the outline that stands for it, corner by corner."""
+    sheet = _Sheet(_bounds([outline.vertices, shapely.get_coordinates(source)]), width)
+    body = [_path(sheet, shapely.MultiPolygon([source]), OBJECT, "none", 1.0, exact=True)]
+    corners = sheet.points(outline.vertices)
+    body.append(f'<polygon points="{_pairs(corners)}" fill="none" stroke="{HAND}"/>')
+    body += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.8" fill="{HAND}"/>' for x, y in corners]
+    return sheet.svg(body, [f"blue: the outline, {len(outline)} vertices; grey: the drawing"])
 
 
 def _regions(cage: Cage) -> tuple[list[shapely.MultiPolygon], list[shapely.MultiPolygon]]:
