@@ -55,7 +55,8 @@ class Bracket:
     tolerance:
         [unit] How far either outline is from the drawing, at most.
     placement:
-        x, y, theta, sigma: where the hand stands, clear of both outlines, in the frame of the case's outline.
+        x, y, theta, sigma: where the hand stands, clear of both outlines, in the frame of the
+        case's outline.
     clearance:
         [unit] Its least distance from the case's outline.
     vertices:
