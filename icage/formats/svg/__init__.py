@@ -1,1 +1,1 @@
-"""Drawings from SVG as a browser sees them: tree, cascade, structure, shapes, clips, paint, page."""
+"""Drawings from SVG as a browser sees them: tree, cascade, structure, shapes, clips, paint."""

@@ -21,12 +21,16 @@ from icage.formats.svg.xml_tree import local_name
 MAX_TESTS: Final = 4_000_000
 """Elements that selectors look at, all together: seconds."""
 
+_USUAL: Final = 40
+"""Characters of a selector that looks at an element once; a longer one counts more often."""
+
 
 class _Selector(NamedTuple):
     """One selector of a rule, in the order in which its declarations apply."""
 
     specificity: Any
     order: int
+    cost: int
     test: Callable[[Any], bool]
     declarations: Declarations
 
@@ -92,10 +96,13 @@ class Cascade:
 
     def __init__(self, root: Element) -> None:
         self._reader = StyleReader()
-        rules = self._reader.rules(root)
         self._matched: dict[Element, list[Declarations]] = {}
-        if rules:
-            self._match(root, rules)
+        try:
+            rules = self._reader.rules(root)
+            if rules:
+                self._match(root, rules)
+        except RecursionError as error:
+            raise FormatError("the style sheets are nested too deeply") from error
         self._known: dict[Element, Declarations] = {}
 
     def declared(self, element: Element) -> Declarations:
@@ -109,12 +116,11 @@ class Cascade:
         tag = local_name(element)
         winning: Declarations = {}
         for name, value in element.items():
-            if name in ATTRIBUTES or tag in GEOMETRY.get(name, ()):
-                if value.strip():
-                    winning[name] = Declared(value.strip(), False)
+            if (name in ATTRIBUTES or tag in GEOMETRY.get(name, ())) and value.strip():
+                winning[name] = Declared(value.strip(), False)
         sheets = self._matched.get(element, [])
         own = element.get("style")
-        layers = [*sheets, self._reader.attribute(own)] if own else sheets
+        layers = [*sheets, self._attribute(own)] if own else sheets
         for important in (False, True):
             for layer in layers:
                 for name, value in layer.items():
@@ -122,15 +128,25 @@ class Cascade:
                         winning[name] = value
         return winning
 
+    def _attribute(self, text: str) -> Declarations:
+        try:
+            return self._reader.attribute(text)
+        except RecursionError as error:
+            raise FormatError("a style attribute is nested too deeply") from error
+
     def _match(self, root: Element, rules: list[Rule]) -> None:
         by_id: dict[str, list[_Selector]] = {}
         by_class: dict[str, list[_Selector]] = {}
         others: list[_Selector] = []
         for order, rule in enumerate(rules):
-            for selector in _compiled(rule):
+            compiled = _compiled(rule)
+            cost = 1 + len(tinycss2.serialize(rule.selectors)) // (_USUAL * len(compiled))
+            for selector in compiled:
                 if selector.pseudo_element is not None or selector.never_matches:
                     continue
-                entry = _Selector(selector.specificity, order, selector.test, rule.declarations)
+                entry = _Selector(
+                    selector.specificity, order, cost, selector.test, rule.declarations
+                )
                 if selector.id is not None:
                     by_id.setdefault(selector.id, []).append(entry)
                 elif selector.class_name is not None:
@@ -144,11 +160,8 @@ class Cascade:
             candidates = [*others, *by_id.get(element.id or "", ())]
             for name in element.classes:
                 candidates += by_class.get(name, ())
-            budget.spend(len(candidates))
-            try:
-                matched = [entry for entry in candidates if entry.test(element)]
-            except (RecursionError, NotImplementedError) as error:
-                raise FormatError("a selector of the style sheets is not supported") from error
+            budget.spend(sum(entry.cost for entry in candidates))
+            matched = [entry for entry in candidates if entry.test(element)]
             if matched:
                 matched.sort(key=lambda entry: entry[:2])
                 self._matched[element.etree_element] = [one.declarations for one in matched]
@@ -157,6 +170,6 @@ class Cascade:
 def _compiled(rule: Rule) -> list[Any]:
     try:
         return list(compile_selector_list(rule.selectors, rule.spaces))
-    except (SelectorError, RecursionError, SyntaxError, MemoryError, NotImplementedError) as error:
+    except (SelectorError, SyntaxError, MemoryError, NotImplementedError) as error:
         text = " ".join(tinycss2.serialize(rule.selectors).split())
         raise FormatError(f"the selector {text!r:.60} of a style sheet is not supported") from error

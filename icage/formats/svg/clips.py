@@ -8,7 +8,6 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from icage.errors import FormatError
 from icage.formats.drawings.curves import Curve
 from icage.formats.drawings.drawing import Shape
 from icage.formats.svg.conditions import holds

@@ -1,4 +1,4 @@
-"""Conditional attributes: which elements are meant for this reader. [SVG2, Sec. 5.9; SVG 1.1, 5.8]"""
+"""Conditional attributes: which elements are meant for this reader. [SVG2, Sec. 5.9]"""
 
 from __future__ import annotations
 

@@ -87,5 +87,5 @@ def _size(root: Element, style: Style, name: str) -> tuple[float | None, str | N
         return None, None
     if unit in PHYSICAL:
         return number * ABSOLUTE[unit], unit
-    plain = match[1] + unit
+    plain = text if unit else match[1]
     return length(root, name, plain, "x", style.measure(None, None), given.css), None

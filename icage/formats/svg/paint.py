@@ -87,7 +87,7 @@ def _alpha(colour: str) -> float | None:
     parsed = parse_color(colour)
     if parsed is None or isinstance(parsed, str):
         return None
-    return float(parsed.alpha)
+    return float(getattr(parsed, "alpha", 1.0))
 
 
 def _server_paints(document: Document, user: Element, name: str, server: Element) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Final
 from xml.etree.ElementTree import Element
 
@@ -12,7 +13,7 @@ from icage.formats.drawings.curves import EllipseArc
 from icage.formats.svg.lengths import Along, Measure, length, numbers
 from icage.formats.svg.path_data import Malformed, Point, Subpath, line, subpaths
 from icage.formats.svg.styles import Style
-from icage.formats.svg.xml_tree import local_name, quoted, refused
+from icage.formats.svg.xml_tree import local_name, refused
 
 SHAPES: Final = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
 
@@ -101,7 +102,7 @@ def _poly(element: Element, closed: bool) -> list[Subpath]:
     if not all(map(math.isfinite, values)):
         raise refused(element, "points", text, "is not finite")
     points: list[Point] = list(zip(values[::2], values[1::2], strict=True))
-    edges = [line(a, b) for a, b in zip(points[:-1], points[1:], strict=True)]
+    edges = [line(a, b) for a, b in pairwise(points)]
     return [Subpath([*edges], closed)] if edges else []
 
 
@@ -114,7 +115,7 @@ def _rect(read: _Lengths) -> list[Subpath]:
     rx, ry = min(rx, w / 2.0), min(ry, h / 2.0)
     if rx == 0.0 or ry == 0.0:
         corners: list[Point] = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-        return [Subpath([line(a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)], True)]
+        return [Subpath([line(a, b) for a, b in pairwise(corners)], True)]
     ring = Subpath(closed=True)
     quarter = math.pi / 2.0
     pen: Point | None = None
@@ -131,7 +132,7 @@ def _rect(read: _Lengths) -> list[Subpath]:
 
 
 def _radii(read: _Lengths) -> tuple[float, float]:
-    """rx and ry; where one is not given, it is the other one."""
+    """The radii rx and ry; where one is not given, it is the other one."""
     rx, ry = read.size("rx", "x"), read.size("ry", "y")
     return rx if rx is not None else ry or 0.0, ry if ry is not None else rx or 0.0
 

@@ -53,21 +53,17 @@ def lines_of(
         join = style.one_of(element, "stroke-linejoin", *_JOINS)
         text = style.given("stroke-miterlimit").text
         limit = length(element, "stroke-miterlimit", text, "x", state.measure)
+        limit = max(limit, 1.0)
     found: list[Line] = []
     for part in parts:
         chain = [placed(curve, state.matrix) for curve in part.curves]
         if part.closed:
             chain.append(closing(chain))
+        clips, names = state.clips, state.names
         found.append(
             Line(
-                tuple(chain),
-                state.names,
-                width * (scale or 0.0),
-                _CAPS[cap],
-                _JOINS[join],
-                max(limit, 1.0),
-                state.clips,
-            )  # fmt: skip
+                tuple(chain), names, width * (scale or 0.0), _CAPS[cap], _JOINS[join], limit, clips
+            )
         )
     return found
 

@@ -18,9 +18,16 @@ from icage.formats.svg.properties import KNOWN
 from icage.formats.svg.xml_tree import local_name, quoted
 
 MAX_STYLE: Final = 300_000
-"""Characters of all style sheets and, apart from them, of all unusual ``style`` attributes."""
+"""Characters of all style sheets without their fonts, and of all unusual ``style`` attributes."""
 
-_PLAIN: Final = re.compile(r"""(?:[^"'\\{}\[\]@/!()]|\([^"'\\{}\[\]@!();]*\)|!\s*important\b)*""")
+_LONG: Final = 20_000
+"""Characters from which on a ``style`` attribute is unusual."""
+
+_FONT: Final = re.compile(r"@font-face\s*\{[^{}*]*\}", re.IGNORECASE)
+
+_PLAIN: Final = re.compile(
+    r"""(?:[^"'\\{}\[\]@/!()]++|\([^"'\\{}\[\]@!();]*+\)|!\s*+important\b)*+"""
+)
 """Declarations that may be split at semicolons and colons: no quotes, escapes or comments."""
 
 _HARMLESS: Final = {"charset", "font-face", "page", "keyframes", "-webkit-keyframes", "viewport",
@@ -71,7 +78,7 @@ class StyleReader:
                 raise FormatError(f"<style> has type={quoted(kind)}, which is not understood")
             if not _applies(sheet.get("media", "all")):
                 continue
-            text = "".join(sheet.itertext())
+            text = _FONT.sub("", "".join(sheet.itertext()))
             if len(text) > self._left:
                 raise FormatError(f"the style sheets have more than {MAX_STYLE} characters")
             self._left -= len(text)
@@ -116,7 +123,7 @@ class StyleReader:
         """What a ``style`` attribute declares."""
         known = self._known.get(text)
         if known is None:
-            if _PLAIN.fullmatch(text):
+            if len(text) <= _LONG and _PLAIN.fullmatch(text):
                 known = _plain(text)
             else:
                 self._left -= len(text)
@@ -131,9 +138,10 @@ def _plain(text: str) -> Declarations:
     declared: Declarations = {}
     for part in text.split(";"):
         name, colon, value = part.partition(":")
-        value, mark, _ = value.partition("!")
-        if colon:
-            _declare(declared, name.strip().lower(), value.strip(), bool(mark))
+        name = name.strip().lower()
+        if colon and name in KNOWN:
+            value, mark, _ = value.partition("!")
+            _declare(declared, name, value.strip(), bool(mark))
     return declared
 
 

@@ -1,4 +1,4 @@
-"""Transforms: the attribute of SVG, the CSS property, and where their origin is. [SVG2, Sec. 8.5]"""
+"""Transforms: the attribute, the CSS property, and where their origin is. [SVG2, Sec. 8.5]"""
 
 from __future__ import annotations
 
@@ -80,9 +80,7 @@ def _step(
 
     def moved(k: int) -> float:
         number, unit = given[k]
-        along = "y" if k == len(given) - 1 and name != "translate" or k == 1 else "x"
-        if name == "translatex":
-            along = "x"
+        along = "y" if name == "translatey" or (name == "translate" and k == 1) or k == 2 else "x"
         return length(element, "transform", number + unit, along, measure, css)
 
     if name.startswith("translate"):

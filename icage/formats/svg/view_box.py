@@ -11,7 +11,6 @@ from icage.formats.svg.lengths import numbers
 from icage.formats.svg.matrices import Matrix
 from icage.formats.svg.xml_tree import local_name, quoted, refused
 
-
 _ALONG_X: Final = {"xMin": 0.0, "xMid": 0.5, "xMax": 1.0}
 _ALONG_Y: Final = {"YMin": 0.0, "YMid": 0.5, "YMax": 1.0}
 """Which share of the room that is left lies before the box."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final, NamedTuple
 from xml.etree.ElementTree import Element
 
@@ -98,5 +99,5 @@ def viewport_of(element: Element, style: Style, measure: Measure, asked: Sides) 
 def rectangle(width: float, height: float, matrix: Matrix) -> Shape:
     """(0, 0) to (width, height), mapped."""
     corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height), (0.0, 0.0)]
-    edges = zip(corners[:-1], corners[1:], strict=True)
+    edges = pairwise(corners)
     return Shape((tuple(placed(line(a, b), matrix) for a, b in edges),))
