@@ -1,4 +1,4 @@
-"""Every feature has the area that a browser paints, as librsvg renders it, or a name in a refusal."""
+"""Every feature has the area that a browser paints, as librsvg renders it, or is refused by name."""
 
 from __future__ import annotations
 
