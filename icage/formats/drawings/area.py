@@ -44,18 +44,59 @@ def area_of(shape: Shape, within: float) -> shapely.Geometry:
 def drawn_area(line: Line, within: float) -> shapely.Geometry:
     """What the drawn width of a line covers, after its clips."""
     points = points_of(line.chain, within)
-    closed = bool((points[0] == points[-1]).all()) and len(points) > 3
-    path = shapely.LinearRing(points) if closed else shapely.LineString(points)
+    meets = bool((points[0] == points[-1]).all()) and len(points) > 3
+    closed = meets and not line.capped
+    if closed:
+        path = shapely.LinearRing(points)
+    elif meets:  # a buffer would take it for a ring: parted in the middle of its first edge
+        middle = (points[0] + points[1]) / 2.0
+        parted = np.vstack([middle, points[1:]])
+        path = shapely.MultiLineString([np.vstack([points[0], middle]), parted])
+    else:
+        path = shapely.LineString(points)
     radius = line.width / 2.0
     if radius <= 0.0:
         return shapely.Polygon()
     # A quarter of a circle in chords of at most ``within``: 1 - cos(a/2) = within / radius.
     segments = int(np.ceil(np.pi / 4.0 / np.arccos(max(0.0, 1.0 - min(1.0, within / radius)))))
     area = shapely.buffer(
-        path, radius, quad_segs=min(max(segments, 4), 400),
-        cap_style=line.cap, join_style=line.join, mitre_limit=line.mitre_limit,
+        path, radius, quad_segs=min(max(segments, 4), 400), cap_style=line.cap,
+        join_style="bevel" if line.join == "mitre" else line.join,
     )  # fmt: skip
+    if line.join == "mitre":
+        area = shapely.union_all([area, *_mitres(points, closed, radius, line.mitre_limit)])
     return _clipped(area, line.clips, within)
+
+
+def _mitres(
+    points: FloatArray, closed: bool, radius: float, limit: float
+) -> list[shapely.Geometry]:
+    """The tips of corners whose length is within the limit; the others stay bevelled.
+
+    A drawing's corner is one or the other; a buffer's own mitres would be cut off at the limit.
+    """
+    ring = points[:-1] if closed else points
+    ring = ring[np.append(True, (np.diff(ring, axis=0) != 0.0).any(axis=1))]
+    if closed and (ring[0] == ring[-1]).all():
+        ring = ring[:-1]
+    if len(ring) < 3:
+        return []
+    before = ring - np.roll(ring, 1, axis=0)
+    before /= np.hypot(before[:, 0], before[:, 1])[:, None]
+    after = np.roll(before, -1, axis=0)
+    turned = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    # length / width = 1 / sin(inner angle / 2) = 1 / cos(turn / 2)
+    cosine = np.sqrt(np.maximum(0.0, (1.0 + (before * after).sum(axis=1)) / 2.0))
+    sharp = (turned != 0.0) & (cosine * limit >= 1.0)
+    if not closed:
+        sharp[[0, -1]] = False
+    outwards = np.where(turned > 0.0, radius, -radius)[:, None]
+    first = ring + outwards * np.column_stack([before[:, 1], -before[:, 0]])
+    last = ring + outwards * np.column_stack([after[:, 1], -after[:, 0]])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tip = ring + (first + last - 2.0 * ring) / (2.0 * cosine**2)[:, None]
+    corners = np.stack([ring, first, tip, last], axis=1)[sharp]
+    return list(shapely.polygons(corners))
 
 
 def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:

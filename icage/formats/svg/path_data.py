@@ -148,6 +148,8 @@ class _Pen:
         x, y = self.at if relative else (0.0, 0.0)
         control = self.at
         if command == "Z":
+            if not self.open.curves and self.last == "M":
+                self.to(self.at)  # drawn as a dot, if its line has caps
             self.open.closed = True
             self.lift()
             self.at = self.start

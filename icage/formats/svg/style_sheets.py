@@ -34,6 +34,11 @@ _HARMLESS: Final = {"charset", "font-face", "page", "keyframes", "-webkit-keyfra
                     "counter-style", "font-feature-values", "-moz-keyframes"}  # fmt: skip
 _MEDIA: Final = {"all": True, "screen": True, "print": False, "speech": False}
 
+_COLOURS: Final = re.compile(
+    r"(?:(?:only\s+)?screen\s+and\s*)?\(\s*prefers-color-scheme\s*:\s*(light|dark)\s*\)"
+)
+"""The page is light, as a browser shows it unless told otherwise."""
+
 
 class Declared(NamedTuple):
     """What a property was given: the text, whether as CSS and not as an attribute, important."""
@@ -193,6 +198,10 @@ def _applies(media: str) -> bool:
         return True
     found: list[bool] = []
     for query in text.split(","):
+        colours = _COLOURS.fullmatch(query.strip())
+        if colours:
+            found.append(colours[1] == "light")
+            continue
         words = query.split()
         negated = bool(words) and words[0] == "not"
         if words and words[0] in ("not", "only"):

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from icage.formats.drawings.reading import Strokes
+
 PAGE = 'width="100" height="100" viewBox="0 0 100 100"'
 BIG = '<rect width="100" height="100" fill="{}"/>'
 COVER = BIG.format("red")
@@ -25,6 +27,7 @@ class Feature:
     root: str = PAGE
     rsvg: bool = True
     refused: str = ""
+    strokes: Strokes = "ignore"
 
     @property
     def text(self) -> str:
@@ -45,8 +48,15 @@ def same(name: str, body: str, **more: bool | str) -> Feature:
     return Feature(name, body, 1200, R_BOX, **more)  # type: ignore[arg-type]
 
 
-def refused(name: str, body: str, words: str, root: str = PAGE) -> Feature:
-    return Feature(name, body, refused=words, root=root)
+def refused(
+    name: str, body: str, words: str, root: str = PAGE, strokes: Strokes = "ignore"
+) -> Feature:
+    return Feature(name, body, refused=words, root=root, strokes=strokes)
+
+
+def drawn(name: str, body: str, area: float, **further: bool) -> Feature:
+    """A feature of strokes, whose drawn width counts."""
+    return Feature(name, body, area, strokes="drawn", **further)  # type: ignore[arg-type]
 
 
 def styled(css: str, body: str) -> str:
@@ -317,6 +327,7 @@ STYLE = [
     same("media screen", styled("@media screen{circle{fill:none}}", f'<circle r="90"/>{R}'),
          rsvg=False),
     same("media print", styled("@media print{rect{fill:none}}", R)),
+    same("media of dark screens", styled("@media (prefers-color-scheme:dark){rect{fill:none}}", R)),
     refused("media width", styled("@media (min-width:9px){rect{fill:none}}", R), "media query"),
     refused("import", styled("@import url(a.css);", R), "@import url"),
     refused("supports", styled("@supports (fill:red){rect{fill:none}}", R), "@supports"),
@@ -389,4 +400,42 @@ CLIPS = [
     refused("clip by a shape of css", f'<g style="clip-path:circle(9px)">{R}</g>', "clip-path='circle"),
 ]  # fmt: skip
 
-FEATURES = [*SHAPES, *STRUCTURE, *TRANSFORMS, *PAINT, *STYLE, *CLIPS]
+PEN = 'fill="none" stroke="red" stroke-width="8"'
+BOX = f'<rect x="20" y="20" width="40" height="30" {PEN}/>'
+STROKE = f'<path d="M10 50h60" {PEN}/>'
+BOX_AREA = 48 * 38 - 32 * 22
+
+STROKES = [
+    drawn("stroke", BOX, BOX_AREA),
+    drawn("stroke and fill", more('<rect x="20" y="20" width="40" height="30"/>', 'stroke="red" stroke-width="8"'), 48 * 38),
+    drawn("stroke of a closed path", f'<path d="M20 20h40v30h-40z" {PEN}/>', BOX_AREA),
+    drawn("stroke closed twice", f'<path d="M20 20h40v30h-40v-30z" {PEN}/>', BOX_AREA),
+    drawn("stroke of an open path", f'<path d="M20 20h40v30h-40v-30" {PEN}/>', BOX_AREA - 16),
+    drawn("stroke of a line", f'<line x1="10" y1="50" x2="70" y2="50" {PEN}/>', 480),
+    drawn("stroke of a circle", f'<circle cx="50" cy="50" r="30" {PEN}/>', PI * (34**2 - 26**2)),
+    drawn("cap butt", STROKE, 480),
+    drawn("cap square", more(STROKE, 'stroke-linecap="square"'), 544),
+    drawn("cap round", more(STROKE, 'style="stroke-linecap:round"'), 480 + PI * 16),
+    drawn("cap of a dot", f'<path d="M50 50h0" stroke-linecap="round" {PEN}/>', PI * 16),
+    drawn("join round", more(BOX, 'stroke-linejoin="round"'), BOX_AREA - (4 - PI) * 16),
+    drawn("join bevel", more(BOX, 'stroke-linejoin="bevel"'), BOX_AREA - 4 * 8),
+    drawn("mitre limit", more(BOX, 'stroke-miterlimit="1.4"'), BOX_AREA - 4 * 8),
+    drawn("mitre within its limit", more(BOX, 'stroke-miterlimit="1.42"'), BOX_AREA),
+    drawn("stroke width in percent", '<path d="M10 50h60" fill="none" stroke="red" stroke-width="8%"/>', 480),
+    drawn("stroke width in em", '<g style="font-size:4px;stroke-width:2em"><path d="M10 50h60" fill="none" stroke="red"/></g>', 480),
+    drawn("stroke scaled", f'<g transform="scale(.5) rotate(20)">{BOX}</g>', BOX_AREA / 4),
+    drawn("stroke clipped", CLIP.format("", '<rect width="40" height="100"/>') + more(STROKE, 'clip-path="url(#c)"'), 240),
+    drawn("stroke opacity", f'{STROKE}<g stroke-opacity="0">{BOX}</g>', 480),
+    drawn("stroke none", f'{STROKE}<rect width="90" height="90" fill="none" stroke="none"/>', 480),
+    drawn("stroke width of zero", f'{STROKE}<rect width="90" height="90" fill="none" stroke="red" stroke-width="0"/>', 480),
+    drawn("dashes of zero", more(STROKE, 'stroke-dasharray="0 0"'), 480),
+    same("stroke of dashes is ignored", R + more(STROKE, 'stroke-dasharray="4"'), rsvg=False),
+    refused("dashes drawn", more(STROKE, 'stroke-dasharray="4"'), "stroke-dasharray='4'", strokes="drawn"),
+    refused("stroke stretched", f'<g transform="scale(2 1)">{STROKE}</g>', "stretched", strokes="drawn"),
+    refused("stroke that does not scale", more(STROKE, 'vector-effect="non-scaling-stroke"'), "vector-effect=", strokes="drawn"),
+    refused("join arcs", more(STROKE, 'stroke-linejoin="arcs"'), "stroke-linejoin='arcs'", strokes="drawn"),
+    refused("stroke unknown", '<path d="M10 50h60" fill="none" stroke="reddish"/>', "stroke='reddish'"),
+    refused("negative stroke", '<path d="M10 50h60" stroke="red" stroke-width="-1"/>', "stroke-width='-1'"),
+]  # fmt: skip
+
+FEATURES = [*STROKES, *SHAPES, *STRUCTURE, *TRANSFORMS, *PAINT, *STYLE, *CLIPS]

@@ -1,4 +1,4 @@
-"""Every feature has the area that a browser paints, as librsvg renders it, or is refused by name."""
+"""Each feature has the area that a browser paints, as librsvg renders it, or is refused by name."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import shapely
 from PIL import Image
 
 from icage.errors import FormatError
-from icage.formats.drawings.area import area_of
+from icage.formats.drawings.area import area_of, drawn_area
 from icage.formats.drawings.reading import Reading
 from icage.formats.svg.reader import read
 from tests.icage.formats.svg.features.table import FEATURES, Feature
@@ -26,9 +26,12 @@ REFUSED = [feature for feature in FEATURES if feature.refused]
 
 
 def painted(feature: Feature) -> shapely.Geometry:
-    """What is filled, y downwards as on the page."""
-    shapes = read(feature.text.encode(), Reading()).shapes
-    area = shapely.union_all([area_of(shape, 1e-4) for shape in shapes])
+    """What is painted, y downwards as on the page."""
+    drawing = read(feature.text.encode(), Reading(strokes=feature.strokes))
+    areas = [area_of(shape, 1e-4) for shape in drawing.shapes]
+    if feature.strokes == "drawn":
+        areas += [drawn_area(line, 1e-4) for line in drawing.lines]
+    area = shapely.union_all(areas)
     return shapely.transform(area, lambda points: points * [1.0, -1.0])
 
 
@@ -75,5 +78,5 @@ def test_the_area_is_what_librsvg_renders(feature: Feature):
 @pytest.mark.parametrize("feature", named(REFUSED))
 def test_what_is_not_understood_is_refused_with_its_name(feature: Feature):
     with pytest.raises(FormatError, match=feature.refused) as caught:
-        read(feature.text.encode(), Reading())
+        read(feature.text.encode(), Reading(strokes=feature.strokes))
     assert "\n" not in str(caught.value)
