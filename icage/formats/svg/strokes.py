@@ -59,10 +59,16 @@ def lines_of(
         chain = [placed(curve, state.matrix) for curve in part.curves]
         if part.closed:
             chain.append(closing(chain))
-        clips, names = state.clips, state.names
         found.append(
             Line(
-                tuple(chain), names, width * (scale or 0.0), _CAPS[cap], _JOINS[join], limit, clips
+                tuple(chain),
+                state.names,
+                width=width * (scale or 0.0),
+                cap=_CAPS[cap],
+                join=_JOINS[join],
+                mitre_limit=limit,
+                clips=state.clips,
+                capped=not part.closed,
             )
         )
     return found
