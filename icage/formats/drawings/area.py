@@ -16,6 +16,7 @@ from icage.errors import FormatError
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
 from icage.formats.drawings.fill import filled
+from icage.outline import LARGEST_COORDINATE
 
 MAX_POINTS: Final = 200_000
 """Vertices of the flattened drawing."""
@@ -57,8 +58,10 @@ def drawn_area(line: Line, within: float) -> shapely.Geometry:
     radius = line.width / 2.0
     if radius <= 0.0:
         return shapely.Polygon()
+    if radius > LARGEST_COORDINATE:
+        raise FormatError(f"a line is wider than {LARGEST_COORDINATE:g}")
     # A quarter of a circle in chords of at most ``within``: 1 - cos(a/2) = within / radius.
-    segments = int(np.ceil(np.pi / 4.0 / np.arccos(max(0.0, 1.0 - min(1.0, within / radius)))))
+    segments = int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - min(1.0, max(1e-12, within / radius)))))
     area = shapely.buffer(
         path, radius, quad_segs=min(max(segments, 4), 400), cap_style=line.cap,
         join_style="bevel" if line.join == "mitre" else line.join,
@@ -82,7 +85,8 @@ def _mitres(
     if len(ring) < 3:
         return []
     before = ring - np.roll(ring, 1, axis=0)
-    before /= np.hypot(before[:, 0], before[:, 1])[:, None]
+    lengths = np.hypot(before[:, 0], before[:, 1])
+    before /= np.where(lengths > 0.0, lengths, 1.0)[:, None]  # 0: from the end to where it meets
     after = np.roll(before, -1, axis=0)
     turned = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     # length / width = 1 / sin(inner angle / 2) = 1 / cos(turn / 2)
@@ -96,7 +100,7 @@ def _mitres(
     with np.errstate(divide="ignore", invalid="ignore"):
         tip = ring + (first + last - 2.0 * ring) / (2.0 * cosine**2)[:, None]
     corners = np.stack([ring, first, tip, last], axis=1)[sharp]
-    return list(shapely.polygons(corners))
+    return [shapely.Polygon(corner) for corner in corners]
 
 
 def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:
