@@ -13,6 +13,7 @@ from scipy.spatial import KDTree
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
+from icage.formats.drawings.crossings import check_crossings
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
 from icage.formats.drawings.fill import filled
@@ -45,6 +46,8 @@ def area_of(shape: Shape, within: float) -> shapely.Geometry:
 def drawn_area(line: Line, within: float) -> shapely.Geometry:
     """What the drawn width of a line covers, after its clips."""
     points = points_of(line.chain, within)
+    check_points(len(points))
+    check_crossings([points])
     meets = bool((points[0] == points[-1]).all()) and len(points) > 3
     closed = meets and not line.capped
     if closed:
@@ -118,6 +121,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geomet
     paths = [path for path in _joined(paths, gap) if len(path) > 1]
     if not paths:
         return shapely.Polygon()
+    check_crossings(paths)
     edges = shapely.union_all([shapely.LineString(path) for path in paths])
     return shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(edges))))
 

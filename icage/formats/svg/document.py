@@ -29,6 +29,8 @@ class Document:
         self.root = root
         self.cascade = Cascade(root)
         self.notes: dict[str, None] = {}
+        self.paints: dict[Element, bool] = {}
+        """Whether a gradient or pattern that is used paints anything."""
         self._ids: dict[str, Element] = {}
         self._parents = {child: parent for parent in root.iter() for child in parent}
         for element in root.iter():

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 from xml.etree.ElementTree import Element
 
+from icage.errors import FormatError
 from icage.formats.svg.xml_tree import refused
 
 NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -19,6 +20,9 @@ ABSOLUTE: Final = {
 """[px] One of each unit. [CSS2024, Sec. 6.2]"""
 
 PHYSICAL: Final = ("mm", "cm", "in", "pt", "pc", "q")
+
+MAX_NUMBERS: Final = 100_000
+"""Of one list."""
 
 _LENGTH: Final = re.compile(rf"({NUMBER})([a-zA-Z]+|%)?")
 _WINDOW: Final = ("vw", "vh", "vi", "vb", "vmin", "vmax")
@@ -108,6 +112,8 @@ def numbers(text: str) -> list[float] | None:
         if match is None:
             return None
         found.append(float(match[1]))
+        if len(found) > MAX_NUMBERS:
+            raise FormatError(f"the drawing has a list of more than {MAX_NUMBERS} numbers")
         place = match.end()
     return found
 

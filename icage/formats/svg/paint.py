@@ -24,6 +24,9 @@ _SYSTEM: Final = {
 }  # fmt: skip
 """Colours of the user's system: all opaque. [css-color-4, Sec. 10]"""
 
+_LONGEST: Final = 200
+"""Characters of a colour."""
+
 _ICC: Final = re.compile(r"\s+icc-color\([^()]*\)$", re.IGNORECASE)
 
 
@@ -66,7 +69,9 @@ def _paints(document: Document, element: Element, style: Style, name: str) -> bo
         seen = bool(fallback) and fallback.lower() != "none"
         return opacity > 0.0 and seen and _is_seen(element, name, fallback, style)
     server = document.target(element, name, url)
-    return opacity > 0.0 and _server_paints(document, element, name, server)
+    if server not in document.paints:
+        document.paints[server] = _server_paints(document, element, name, server)
+    return opacity > 0.0 and document.paints[server]
 
 
 def _is_seen(element: Element, name: str, colour: str, style: Style) -> bool:
@@ -82,6 +87,8 @@ def _is_seen(element: Element, name: str, colour: str, style: Style) -> bool:
 
 @lru_cache(maxsize=10_000)
 def _alpha(colour: str) -> float | None:
+    if len(colour) > _LONGEST:
+        return None
     if colour.lower() in _SYSTEM:
         return 1.0
     parsed = parse_color(colour)
@@ -99,6 +106,7 @@ def _server_paints(document: Document, user: Element, name: str, server: Element
     source: Element | None = server
     while source is not None and source not in seen:
         seen.add(source)
+        document.step()
         if tag == "pattern":
             if len(source):
                 document.note("what is filled with a pattern counts as filled wholly")

@@ -22,6 +22,9 @@ _JOINS: Final[dict[str, Literal["mitre", "round", "bevel"]]] = {
     "miter": "mitre", "round": "round", "bevel": "bevel",
 }  # fmt: skip
 
+_LONGEST: Final = 1_000
+"""Characters of a list of dashes that could all be zero."""
+
 
 def lines_of(
     document: Document, element: Element, state: State, parts: list[Subpath], width: float,
@@ -77,6 +80,8 @@ def lines_of(
 def _is_solid(element: Element, state: State) -> bool:
     """Whether a list of dashes means none: all of them are zero."""
     text = state.style.given("stroke-dasharray").text
+    if len(text) > _LONGEST:
+        return False
     words = text.replace(",", " ").split()
     return not any(
         length(element, "stroke-dasharray", word, "both", state.measure) for word in words
