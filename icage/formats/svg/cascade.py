@@ -1,7 +1,7 @@
 """Which declarations win on each element: attributes, style rules, ``style``, ``!important``.
 
 cssselect2 tests the selectors; how often it may look at an element is counted, since a few short
-rules can ask for more than a machine can do. [CSS2024, Sec. 6.4 of css-cascade]
+rules can ask for more than a machine can do. [CSSCascade2022, Sec. 6]
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Clip paths as areas in drawing coordinates. [css-masking-1, Sec. 5]"""
+"""Clip paths as areas in drawing coordinates. [CSSMasking2021, Sec. 5]"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditional attributes: which elements are meant for this reader. [SVG2, Sec. 5.9]"""
+"""Conditional attributes: which elements are meant for this reader. [SVG2018, Sec. 5]"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers and lengths of SVG and CSS, in user units. [SVG2, Sec. 4.3; CSS2024, Sec. 6]"""
+"""Numbers and lengths of SVG and CSS, in user units. [SVG2018, Sec. 4] [CSS2024, Sec. 6]"""
 
 from __future__ import annotations
 

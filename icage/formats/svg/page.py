@@ -1,4 +1,4 @@
-"""The page of a drawing: its size, its unit, and the map of its view box. [SVG2, Sec. 8.2]"""
+"""The page of a drawing: its size, its unit, and the map of its view box. [SVG2018, Sec. 8]"""
 
 from __future__ import annotations
 

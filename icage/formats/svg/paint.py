@@ -1,4 +1,4 @@
-"""Whether a fill or a stroke paints anything: colours, paint servers, opacities. [SVG2, Sec. 13]"""
+"""Whether a fill or a stroke paints: colours, paint servers, opacities. [SVG2018, Sec. 13]"""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SYSTEM: Final = {
     "linktext", "mark", "marktext", "selecteditem", "selecteditemtext", "visitedtext", "window",
     "windowtext", "menu", "menutext", "background", "buttonhighlight", "buttonshadow",
 }  # fmt: skip
-"""Colours of the user's system: all opaque. [css-color-4, Sec. 10]"""
+"""Colours of the user's system: all opaque. [CSSColor2022, Sec. 6]"""
 
 _LONGEST: Final = 200
 """Characters of a colour."""
@@ -65,7 +65,7 @@ def _paints(document: Document, element: Element, style: Style, name: str) -> bo
         return opacity > 0.0 and _is_seen(element, name, given, style)
     url, fallback = match[2].strip(), match[3].strip()
     if url.startswith("#") and not document.has(url):
-        # A missing paint is the one named behind it, else none.  [SVG2, Sec. 13.2]
+        # A missing paint is the one named behind it, else none.  [SVG2018, Sec. 13]
         seen = bool(fallback) and fallback.lower() != "none"
         return opacity > 0.0 and seen and _is_seen(element, name, fallback, style)
     server = document.target(element, name, url)

@@ -1,6 +1,6 @@
 """Path data, by the grammar of SVG; what a browser would draw up to an error is refused here.
 
-[SVG2, Sec. 9.3]
+[SVG2018, Sec. 9]
 """
 
 from __future__ import annotations
@@ -201,7 +201,7 @@ def ellipse_arc(start: Point, values: list[float], end: Point) -> EllipseArc | N
     """The arc by its centre, for rx, ry, rotation and the two flags; None if it is a line.
 
     In coordinates where the ellipse is the unit circle around c, the ends are u and -u. Radii
-    too small are scaled up. [SVG2, App. B.2.4]
+    too small are scaled up. [SVG2018, Sec. 9]
     """
     rx, ry, degrees, large, sweeping = values
     rx, ry = abs(rx), abs(ry)

@@ -42,7 +42,7 @@ GEOMETRY: Final = {
     "ry": ("rect", "ellipse"),
     "d": ("path",),
 }
-"""Attributes that are properties, of the elements named. [SVG2, Sec. 6.6]"""
+"""Attributes that are properties, of the elements named. [SVG2018, Sec. 6]"""
 
 KNOWN: Final = {*INHERITED, *OWN, *REFUSED, *GEOMETRY, "marker", "font"}
 

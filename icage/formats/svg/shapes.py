@@ -1,4 +1,4 @@
-"""The basic shapes and paths as subpaths of curves, in their own user units. [SVG2, Sec. 9, 10]"""
+"""Basic shapes and paths as subpaths, in their own user units. [SVG2018, Sec. 9, Sec. 10]"""
 
 from __future__ import annotations
 

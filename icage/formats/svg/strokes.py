@@ -1,4 +1,4 @@
-"""Strokes as lines of a drawing: the path, and how wide it is drawn. [SVG2, Sec. 13.5]"""
+"""Strokes as lines of a drawing: the path, and how wide it is drawn. [SVG2018, Sec. 13]"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The walk over a drawing in the order in which it is drawn. [SVG2, Sec. 3 and 5]
+"""The walk over a drawing in the order in which it is drawn. [SVG2018, Sec. 3, Sec. 5]
 
 Groups, nested drawings, ``use`` and ``switch`` become the state in which a shape is met: style,
 map to drawing coordinates, viewport, clips, names.

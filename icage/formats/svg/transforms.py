@@ -1,4 +1,4 @@
-"""Transforms: the attribute, the CSS property, and where their origin is. [SVG2, Sec. 8.5]"""
+"""Transforms: the attribute, the CSS property, and where their origin is. [SVG2018, Sec. 8]"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""View boxes and how they fit into their viewport. [SVG2, Sec. 8.6 to 8.8]"""
+"""View boxes and how they fit into their viewport. [SVG2018, Sec. 8]"""
 
 from __future__ import annotations
 

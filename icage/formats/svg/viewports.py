@@ -1,4 +1,4 @@
-"""Nested drawings and symbols: their place, size and view box. [SVG2, Sec. 5.5, 5.6, 8.2]"""
+"""Nested drawings and symbols: their place, size and view box. [SVG2018, Sec. 5, Sec. 8]"""
 
 from __future__ import annotations
 
