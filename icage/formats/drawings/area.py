@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -137,11 +138,25 @@ def check_points(count: int) -> None:
 def _clipped(
     area: shapely.Geometry, clips: Sequence[Sequence[Shape]], within: float
 ) -> shapely.Geometry:
+    if not clips:
+        return area
+    return shapely.intersection(area, _left_by(tuple(map(tuple, clips)), within))
+
+
+@lru_cache(maxsize=32)
+def _left_by(clips: tuple[tuple[Shape, ...], ...], within: float) -> shapely.Geometry:
+    """What clips leave of everything; shapes that stand together ask for the same."""
+    left: list[shapely.Geometry] = []
     for clip in clips:
-        area = shapely.intersection(
-            area, shapely.union_all([area_of(shape, within) for shape in clip])
-        )
-    return area
+        areas: list[shapely.Geometry] = []
+        points = 0
+        for shape in clip:
+            areas.append(area_of(shape, within))
+            points += int(shapely.get_num_coordinates(areas[-1]))
+            check_points(points)
+        one = shapely.union_all(areas)
+        left = [shapely.intersection(left[0], one) if left else one]
+    return left[0]
 
 
 def _joined(paths: list[FloatArray], gap: float) -> list[FloatArray]:

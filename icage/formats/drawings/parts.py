@@ -81,6 +81,7 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
     areas, said = _without_background(areas, drawing, reading)
     notes += said
     areas += _of_lines(drawing, reading, within, gap)
+    areas = list({shapely.to_wkb(area): area for area in areas}.values())  # drawn twice is once
     _check_work(areas)
     whole = _polygons(shapely.union_all(areas))
     parts = [part for part in _joined(whole, tolerance) if size(part) > tolerance]

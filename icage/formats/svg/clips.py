@@ -11,12 +11,12 @@ import numpy as np
 from icage.formats.drawings.curves import Curve
 from icage.formats.drawings.drawing import Shape
 from icage.formats.svg.conditions import holds
-from icage.formats.svg.document import Document
+from icage.formats.svg.document import Clips, Document
 from icage.formats.svg.matrices import IDENTITY, Matrix, placed, product
 from icage.formats.svg.paint import URL
 from icage.formats.svg.rings import rings
 from icage.formats.svg.shapes import SHAPES, subpaths_of
-from icage.formats.svg.structure import NOT_READ, Clips, State, Walk, own_transform
+from icage.formats.svg.structure import NOT_READ, State, Walk, own_transform
 from icage.formats.svg.viewports import shift
 from icage.formats.svg.xml_tree import local_name, reference, refused
 

@@ -6,6 +6,7 @@ from typing import Final
 from xml.etree.ElementTree import Element
 
 from icage.errors import FormatError
+from icage.formats.drawings.drawing import Shape
 from icage.formats.svg.cascade import Cascade
 from icage.formats.svg.path_data import MAX_CURVES
 from icage.formats.svg.style_sheets import Declarations
@@ -14,6 +15,12 @@ from icage.formats.svg.xml_tree import MAX_ELEMENTS, reference, refused
 
 MAX_STEPS: Final = 5 * MAX_ELEMENTS
 """Elements drawn or used to clip or to measure, with every repetition."""
+
+MAX_CLIPS: Final = 20_000
+"""Clips of all shapes, those that stand together counted once."""
+
+Clips = tuple[tuple[Shape, ...], ...]
+"""Each is a union of areas in drawing coordinates; what is outside of any is not shown."""
 
 
 class Document:
@@ -40,6 +47,8 @@ class Document:
         self._drawn = 0
         self._steps = 0
         self._curves = 0
+        self._clips: Clips = ()
+        self._clipped = 0
 
     def declared(self, element: Element) -> Declarations:
         """What the cascade gives an element."""
@@ -99,6 +108,14 @@ class Document:
         self._steps += 1
         if self._steps > MAX_STEPS:
             raise FormatError(f"clip paths and <use> repeat more than {MAX_STEPS} elements")
+
+    def clip(self, clips: Clips) -> None:
+        """Count the clips of a shape, unless the shape before it has the same."""
+        if clips is not self._clips:
+            self._clips = clips
+            self._clipped += len(clips)
+        if self._clipped > MAX_CLIPS:
+            raise FormatError(f"shapes are clipped more than {MAX_CLIPS} times")
 
     def add_curves(self, count: int) -> None:
         """Count lines and curves."""

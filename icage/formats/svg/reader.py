@@ -95,6 +95,7 @@ def _draw(
     if not parts:
         return
     document.add_curves(sum(len(part.curves) for part in parts))
+    document.clip(state.clips)
     counts = filled or (stroked and reading.strokes not in (None, "ignore"))
     if marked:
         _check_markers(document, element, state, counts)

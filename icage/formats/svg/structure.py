@@ -12,9 +12,8 @@ from typing import Final
 from xml.etree.ElementTree import Element
 
 from icage.errors import FormatError
-from icage.formats.drawings.drawing import Shape
 from icage.formats.svg.conditions import holds
-from icage.formats.svg.document import Document
+from icage.formats.svg.document import Clips, Document
 from icage.formats.svg.lengths import Measure, share
 from icage.formats.svg.matrices import Matrix, product
 from icage.formats.svg.shapes import SHAPES
@@ -23,8 +22,6 @@ from icage.formats.svg.transforms import about_origin, transform
 from icage.formats.svg.view_box import check_finite
 from icage.formats.svg.viewports import Sides, rectangle, shift, viewport_of
 from icage.formats.svg.xml_tree import local_name, quoted, reference, refused
-
-Clips = tuple[tuple[Shape, ...], ...]
 
 NOT_READ: Final = ("text", "image", "foreignObject")
 """What is painted and has no outline that can be read."""
@@ -258,8 +255,10 @@ def own_transform(element: Element, style: Style, measure: Measure) -> Matrix:
     if given.text.lower() == "none":
         return matrix
     style.one_of(element, "transform-box", "view-box", "border-box")
-    origin = style.given("transform-origin").text
-    return about_origin(element, matrix, origin, measure) if origin else matrix
+    origin = style.given("transform-origin")
+    if not origin.text:
+        return matrix
+    return about_origin(element, matrix, origin.text, origin.css, measure)
 
 
 def refuse_given(element: Element, style: Style, name: str) -> None:

@@ -45,7 +45,9 @@ def transform(element: Element, text: str, css: bool, measure: Measure) -> Matri
     return total
 
 
-def about_origin(element: Element, matrix: Matrix, origin: str, measure: Measure) -> Matrix:
+def about_origin(
+    element: Element, matrix: Matrix, origin: str, css: bool, measure: Measure
+) -> Matrix:
     """The map with its origin at ``transform-origin``."""
     words = origin.lower().split()
     if not 1 <= len(words) <= 3:
@@ -57,8 +59,8 @@ def about_origin(element: Element, matrix: Matrix, origin: str, measure: Measure
         first, second = second, first
     if first in ("top", "bottom") or second in ("left", "right"):
         raise refused(element, "transform-origin", origin)
-    x = length(element, "transform-origin", _KEYWORDS.get(first, first), "x", measure)
-    y = length(element, "transform-origin", _KEYWORDS.get(second, second), "y", measure)
+    x = length(element, "transform-origin", _KEYWORDS.get(first, first), "x", measure, css)
+    y = length(element, "transform-origin", _KEYWORDS.get(second, second), "y", measure, css)
     return product(product(translation(x, y), matrix), translation(-x, -y))
 
 

@@ -58,6 +58,13 @@ CLIP_TREE = '<clipPath id="c0"><rect width="9" height="9"/></clipPath>' + "".joi
             id="tree of clips",
         ),
         pytest.param(
+            "".join(f'<clipPath id="c{k}">{RECT}</clipPath>' for k in range(90))
+            + "".join(f'<g clip-path="url(#c{k})">' for k in range(90))
+            + RECT.replace("/>", ' clip-path="url(#c0)"/>') * 900 + "</g>" * 90,
+            "clipped more than 20000",
+            id="clips inside one another",
+        ),
+        pytest.param(
             '<clipPath id="a"><rect width="9" height="9" clip-path="url(#b)"/></clipPath>'
             '<clipPath id="b"><rect width="9" height="9" clip-path="url(#a)"/></clipPath>'
             '<rect width="60" height="50" clip-path="url(#a)"/>',

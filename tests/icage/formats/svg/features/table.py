@@ -226,6 +226,7 @@ TRANSFORMS = [
             f"{R}</g>", 1200, (50, 10, 80, 50), rsvg=False),
     Feature("transform origin in words", '<g style="transform:scale(.5);transform-origin:right top">'
             '<rect width="100" height="100"/></g>', 2500, (50, 0, 100, 50), rsvg=False),
+    refused("transform origin without unit", '<rect width="9" height="9" style="transform:scale(.5);transform-origin:9 9"/>', "transform-origin='9', which has no unit"),
     refused("css angle without unit", '<rect width="9" height="9" style="transform:rotate(45)"/>',
             "malformed transform"),
     refused("transform of space", '<rect width="9" height="9" style="transform:rotateX(4deg)"/>',
