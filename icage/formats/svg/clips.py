@@ -16,7 +16,7 @@ from icage.formats.svg.matrices import IDENTITY, Matrix, placed, product
 from icage.formats.svg.paint import URL
 from icage.formats.svg.rings import rings
 from icage.formats.svg.shapes import SHAPES, subpaths_of
-from icage.formats.svg.structure import NOT_READ, State, Walk, own_transform
+from icage.formats.svg.structure import NOT_READ, State, Walk, own_transform, refuse_given
 from icage.formats.svg.viewports import shift
 from icage.formats.svg.xml_tree import local_name, reference, refused
 
@@ -65,6 +65,8 @@ class ClipPaths:
         matrix = product(state.matrix, own_transform(path, style, within.measure))
         units = path.get("clipPathUnits", "").strip() or "userSpaceOnUse"
         if units == "objectBoundingBox":
+            # Programs do not agree about which of the two comes first.
+            refuse_given(path, style, "transform")
             matrix = product(matrix, self._box(element, state))
         elif units != "userSpaceOnUse":
             raise refused(path, "clipPathUnits", units)

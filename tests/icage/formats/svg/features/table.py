@@ -157,6 +157,7 @@ STRUCTURE = [
             '<use href="#s" width="30" height="50"/>', 1500, (0, 0, 30, 50), rsvg=False),
     Feature("symbol overflow", '<symbol id="s" style="overflow:visible"><rect width="80" height="80"/>'
             '</symbol><use href="#s" width="30" height="50"/>', 6400),
+    Feature("use of an svg", '<defs><svg id="s" x="5" y="5" width="20" height="20" viewBox="0 0 10 10"><rect width="10" height="5"/></svg></defs><use href="#s" x="10" y="10" width="60" height="60"/>', 1800, (15, 15, 75, 45), rsvg=False),
     refused("symbol of a size", '<symbol id="s" width="9" viewBox="0 0 9 9"><rect width="9" '
             'height="9"/></symbol><use href="#s"/>', "not supported on a symbol"),
     Feature("nested svg", '<svg x="10" y="20" width="50" height="50"><rect width="90" height="20"/>'
@@ -391,6 +392,8 @@ CLIPS = [
     same("empty clip", '<clipPath id="c"/><rect width="99" height="99" clip-path="url(#c)"/>' + R),
     Feature("clip of a use", CLIP.format("", HALF) + '<defs><rect id="r" width="40" height="30"/></defs>'
             '<use href="#r" x="10" y="20" clip-path="url(#c)"/>', 900, (10, 20, 40, 50)),
+    Feature("clip rule inherited", '<g clip-rule="evenodd">' + CLIP.format("", '<path d="M0 0h90v90h-90zM20 30h20v10h-20z"/>') + f'</g><g clip-path="url(#c)">{R}</g>', 1000),
+    refused("clip by a box that is moved", CLIP.format(' clipPathUnits="objectBoundingBox" transform="scale(.5)"', HALF) + f'<g clip-path="url(#c)">{R}</g>', "transform='scale"),
     refused("clip of text", CLIP.format("", '<text y="9">a</text>') + f'<g clip-path="url(#c)">{R}</g>',
             "<text>"),
     refused("clip with a group", CLIP.format("", f"<g>{HALF}</g>") + f'<g clip-path="url(#c)">{R}</g>',
