@@ -21,6 +21,9 @@ from icage.formats.svg.xml_tree import local_name
 MAX_TESTS: Final = 4_000_000
 """Elements that selectors look at, all together: seconds."""
 
+_NO_VALUES: Final = ("", "null", "undefined")
+"""What programs write for nothing; it is no value of any property, so the attribute is ignored."""
+
 _USUAL: Final = 40
 """Characters of a selector that looks at an element once; a longer one counts more often."""
 
@@ -116,7 +119,9 @@ class Cascade:
         tag = local_name(element)
         winning: Declarations = {}
         for name, value in element.items():
-            if (name in ATTRIBUTES or tag in GEOMETRY.get(name, ())) and value.strip():
+            if (name in ATTRIBUTES or tag in GEOMETRY.get(name, ())) and (
+                value.strip() not in _NO_VALUES
+            ):
                 winning[name] = Declared(value.strip(), False)
         sheets = self._matched.get(element, [])
         own = element.get("style")

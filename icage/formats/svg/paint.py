@@ -41,9 +41,9 @@ def is_filled(document: Document, element: Element, style: Style) -> bool:
     return _paints(document, element, style, "fill")
 
 
-def is_stroked(document: Document, element: Element, style: Style, width: float) -> bool:
-    """Whether the element's line, of this width, is painted."""
-    return width > 0.0 and _paints(document, element, style, "stroke")
+def is_stroked(document: Document, element: Element, style: Style) -> bool:
+    """Whether the element's line is painted, if it has a width."""
+    return _paints(document, element, style, "stroke")
 
 
 def stroke_width(element: Element, style: Style, measure: Measure) -> float:

@@ -86,8 +86,9 @@ def _draw(
         document.note(_LEFT_OUT[tag])
         return
     filled = tag != "line" and is_filled(document, element, style)
-    width = stroke_width(element, style, state.measure)
-    stroked = is_stroked(document, element, style, width)
+    stroked = is_stroked(document, element, style)
+    width = stroke_width(element, style, state.measure) if stroked else 0.0
+    stroked = width > 0.0
     marked = tag in _MARKED and any(style.text(name) != "none" for name in _MARKERS)
     if not (filled or stroked or marked):
         return

@@ -438,6 +438,8 @@ STROKES = [
     refused("stroke stretched", f'<g transform="scale(2 1)">{STROKE}</g>', "stretched", strokes="drawn"),
     refused("stroke that does not scale", more(STROKE, 'vector-effect="non-scaling-stroke"'), "vector-effect=", strokes="drawn"),
     refused("join arcs", more(STROKE, 'stroke-linejoin="arcs"'), "stroke-linejoin='arcs'", strokes="drawn"),
+    drawn("width of null", '<g stroke-width="8"><path d="M10 50h60" fill="none" stroke="red" stroke-width="null" stroke-dasharray="null"/></g>', 480),
+    same("width of no stroke", more(R, 'stroke-width="var(--w)"')),
     refused("stroke unknown", '<path d="M10 50h60" fill="none" stroke="reddish"/>', "stroke='reddish'"),
     refused("negative stroke", '<path d="M10 50h60" stroke="red" stroke-width="-1"/>', "stroke-width='-1'"),
 ]  # fmt: skip
