@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -13,9 +14,11 @@ from scipy.spatial import KDTree
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
+from icage.formats.drawings.crossings import check_crossings
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
 from icage.formats.drawings.fill import filled
+from icage.outline import LARGEST_COORDINATE
 
 MAX_POINTS: Final = 200_000
 """Vertices of the flattened drawing."""
@@ -44,18 +47,64 @@ def area_of(shape: Shape, within: float) -> shapely.Geometry:
 def drawn_area(line: Line, within: float) -> shapely.Geometry:
     """What the drawn width of a line covers, after its clips."""
     points = points_of(line.chain, within)
-    closed = bool((points[0] == points[-1]).all()) and len(points) > 3
-    path = shapely.LinearRing(points) if closed else shapely.LineString(points)
+    check_points(len(points))
+    check_crossings([points])
+    meets = bool((points[0] == points[-1]).all()) and len(points) > 3
+    closed = meets and not line.capped
+    if closed:
+        path = shapely.LinearRing(points)
+    elif meets:  # a buffer would take it for a ring: parted in the middle of its first edge
+        middle = (points[0] + points[1]) / 2.0
+        parted = np.vstack([middle, points[1:]])
+        path = shapely.MultiLineString([np.vstack([points[0], middle]), parted])
+    else:
+        path = shapely.LineString(points)
     radius = line.width / 2.0
     if radius <= 0.0:
         return shapely.Polygon()
+    if radius > LARGEST_COORDINATE:
+        raise FormatError(f"a line is wider than {LARGEST_COORDINATE:g}")
     # A quarter of a circle in chords of at most ``within``: 1 - cos(a/2) = within / radius.
-    segments = int(np.ceil(np.pi / 4.0 / np.arccos(max(0.0, 1.0 - min(1.0, within / radius)))))
+    segments = int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - min(1.0, max(1e-12, within / radius)))))
     area = shapely.buffer(
-        path, radius, quad_segs=min(max(segments, 4), 400),
-        cap_style=line.cap, join_style=line.join, mitre_limit=line.mitre_limit,
+        path, radius, quad_segs=min(max(segments, 4), 400), cap_style=line.cap,
+        join_style="bevel" if line.join == "mitre" else line.join,
     )  # fmt: skip
+    if line.join == "mitre":
+        area = shapely.union_all([area, *_mitres(points, closed, radius, line.mitre_limit)])
     return _clipped(area, line.clips, within)
+
+
+def _mitres(
+    points: FloatArray, closed: bool, radius: float, limit: float
+) -> list[shapely.Geometry]:
+    """The tips of corners whose length is within the limit; the others stay bevelled.
+
+    A drawing's corner is one or the other; a buffer's own mitres would be cut off at the limit.
+    """
+    ring = points[:-1] if closed else points
+    ring = ring[np.append(True, (np.diff(ring, axis=0) != 0.0).any(axis=1))]
+    if closed and (ring[0] == ring[-1]).all():
+        ring = ring[:-1]
+    if len(ring) < 3:
+        return []
+    before = ring - np.roll(ring, 1, axis=0)
+    lengths = np.hypot(before[:, 0], before[:, 1])
+    before /= np.where(lengths > 0.0, lengths, 1.0)[:, None]  # 0: from the end to where it meets
+    after = np.roll(before, -1, axis=0)
+    turned = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    # length / width = 1 / sin(inner angle / 2) = 1 / cos(turn / 2)
+    cosine = np.sqrt(np.maximum(0.0, (1.0 + (before * after).sum(axis=1)) / 2.0))
+    sharp = (turned != 0.0) & (cosine * limit >= 1.0)
+    if not closed:
+        sharp[[0, -1]] = False
+    outwards = np.where(turned > 0.0, radius, -radius)[:, None]
+    first = ring + outwards * np.column_stack([before[:, 1], -before[:, 0]])
+    last = ring + outwards * np.column_stack([after[:, 1], -after[:, 0]])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tip = ring + (first + last - 2.0 * ring) / (2.0 * cosine**2)[:, None]
+    corners = np.stack([ring, first, tip, last], axis=1)[sharp]
+    return [shapely.Polygon(corner) for corner in corners]
 
 
 def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:
@@ -73,6 +122,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geomet
     paths = [path for path in _joined(paths, gap) if len(path) > 1]
     if not paths:
         return shapely.Polygon()
+    check_crossings(paths)
     edges = shapely.union_all([shapely.LineString(path) for path in paths])
     return shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(edges))))
 
@@ -88,11 +138,25 @@ def check_points(count: int) -> None:
 def _clipped(
     area: shapely.Geometry, clips: Sequence[Sequence[Shape]], within: float
 ) -> shapely.Geometry:
+    if not clips:
+        return area
+    return shapely.intersection(area, _left_by(tuple(map(tuple, clips)), within))
+
+
+@lru_cache(maxsize=32)
+def _left_by(clips: tuple[tuple[Shape, ...], ...], within: float) -> shapely.Geometry:
+    """What clips leave of everything; shapes that stand together ask for the same."""
+    left: list[shapely.Geometry] = []
     for clip in clips:
-        area = shapely.intersection(
-            area, shapely.union_all([area_of(shape, within) for shape in clip])
-        )
-    return area
+        areas: list[shapely.Geometry] = []
+        points = 0
+        for shape in clip:
+            areas.append(area_of(shape, within))
+            points += int(shapely.get_num_coordinates(areas[-1]))
+            check_points(points)
+        one = shapely.union_all(areas)
+        left = [shapely.intersection(left[0], one) if left else one]
+    return left[0]
 
 
 def _joined(paths: list[FloatArray], gap: float) -> list[FloatArray]:

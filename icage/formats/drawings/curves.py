@@ -21,6 +21,10 @@ MAX_CHORDS = 20_000
 """Of one curve; a circle flattened to 1e-8 of its size has 11,000."""
 
 
+_NEARLY_REAL = 4e-12
+"""Square of twice the imaginary part that a zero may have."""
+
+
 class Curve(Protocol):
     """A smooth curve over t in [0, 1]."""
 
@@ -62,19 +66,27 @@ class Bezier:
         """Zeros of x' and y'."""
         if len(self.control) < 3:
             return []
-        first = np.diff(self.control, axis=0)
         zeros: list[float] = []
-        for column in first.T:
+        for column in np.diff(self.control, axis=0).T.tolist():
             if len(column) == 2:
-                powers = [column[1] - column[0], column[0]]
+                zeros += _zeros(0.0, column[1] - column[0], column[0])
             else:
                 a, b, c = column
-                powers = [a - 2.0 * b + c, 2.0 * (b - a), a]
-            scale = max(abs(power) for power in powers)
-            if scale > 0.0:
-                roots = np.roots(np.array(powers) / scale)
-                zeros += [float(root.real) for root in roots if abs(root.imag) < 1e-6]
+                zeros += _zeros(a - 2.0 * b + c, 2.0 * (b - a), a)
         return [zero for zero in zeros if 0.0 < zero < 1.0]
+
+
+def _zeros(a: float, b: float, c: float) -> list[float]:
+    """Real zeros of a t^2 + b t + c, also those that rounding has just made complex."""
+    scale = max(abs(a), abs(b), abs(c))
+    if scale == 0.0:
+        return []
+    a, b, c = a / scale, b / scale, c / scale
+    square = b * b - 4.0 * a * c
+    if square < -_NEARLY_REAL * a * a:
+        return []
+    far = -(b + math.copysign(math.sqrt(max(square, 0.0)), b)) / 2.0
+    return [p / q for p, q in ((far, a), (c, far)) if q != 0.0]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

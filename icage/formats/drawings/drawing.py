@@ -51,6 +51,8 @@ class Line:
         How its ends and corners are drawn, in shapely's words.
     clips:
         As of a shape; they cut the drawn width, not the path itself.
+    capped:
+        Whether its ends are drawn as ends even where they meet.
     """
 
     chain: Ring
@@ -60,6 +62,7 @@ class Line:
     join: Literal["mitre", "round", "bevel"] = "mitre"
     mitre_limit: float = 4.0
     clips: tuple[tuple[Shape, ...], ...] = ()
+    capped: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,6 +10,7 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import FormatError
+from icage.formats.drawings.crossings import check_crossings
 
 FillRule = Literal["nonzero", "evenodd"]
 
@@ -31,6 +32,7 @@ def filled(rings: Sequence[FloatArray], rule: FillRule) -> shapely.Geometry:
         if alone.is_valid:
             return alone
     closed = [np.vstack([ring, ring[:1]]) for ring in usable]
+    check_crossings(closed)
     edges = shapely.union_all([shapely.LineString(ring) for ring in closed])
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(edges)))
     vertices = sum(len(ring) for ring in closed)

@@ -10,7 +10,8 @@ import numpy as np
 import shapely
 
 from icage.errors import FormatError
-from icage.formats.drawings.area import area_of, drawn_area, enclosed
+from icage.formats.drawings.area import area_of, check_points, drawn_area, enclosed
+from icage.formats.drawings.crossings import MAX_OVERLAPS, check_crossings
 from icage.formats.drawings.drawing import Drawing, Line, Shape
 from icage.formats.drawings.reading import BY_ID, LARGEST, Reading
 from icage.outline import LARGEST_COORDINATE
@@ -71,10 +72,17 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
         raise FormatError("the drawing has no area")
     notes: list[str] = []
     within = FLATTEN * tolerance
-    areas = [area_of(shape, within) for shape in drawing.shapes]
+    areas: list[shapely.Geometry] = []
+    points = 0
+    for shape in drawing.shapes:
+        areas.append(area_of(shape, within))
+        points += int(shapely.get_num_coordinates(areas[-1]))
+        check_points(points)
     areas, said = _without_background(areas, drawing, reading)
     notes += said
     areas += _of_lines(drawing, reading, within, gap)
+    areas = list({shapely.to_wkb(area): area for area in areas}.values())  # drawn twice is once
+    _check_work(areas)
     whole = _polygons(shapely.union_all(areas))
     parts = [part for part in _joined(whole, tolerance) if size(part) > tolerance]
     if not parts:
@@ -83,6 +91,13 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
     picked, said = _picked(parts, reading)
     notes += said
     return Part(shapely.Polygon(picked.exterior), (*notes, *_holes(picked, tolerance)))
+
+
+def _check_work(areas: list[shapely.Geometry]) -> None:
+    """Refuse areas whose union would take too long."""
+    parts = np.concatenate([np.asarray(shapely.get_parts(area)) for area in areas] or [[]])
+    rings = np.asarray(shapely.get_rings(parts))
+    check_crossings([shapely.get_coordinates(ring) for ring in rings], MAX_OVERLAPS)
 
 
 def size(area: shapely.Geometry) -> float:

@@ -1,1 +1,1 @@
-"""Outlines from SVG drawings: the tree, its shapes, their curves, what they fill."""
+"""Drawings from SVG as a browser sees them: tree, cascade, structure, shapes, clips, paint."""

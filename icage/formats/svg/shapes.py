@@ -1,145 +1,147 @@
-"""Filled shapes of a drawing as rings of curves: svgelements read, transforms applied.
-
-svgelements resolves groups, ``use``, styles, lengths and view boxes; the curves are built here
-from its untransformed segments and its matrix, because it turns a skewed circle into the wrong
-ellipse.
-"""
+"""Basic shapes and paths as subpaths, in their own user units. [SVG2018, Sec. 9, Sec. 10]"""
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Iterator
-from typing import Any, Final, cast
-from xml.etree.ElementTree import fromstring
+from itertools import pairwise
+from typing import Final
+from xml.etree.ElementTree import Element
 
 import numpy as np
-import svgelements as svg
 
-from icage.arrays import FloatArray
-from icage.errors import FormatError
-from icage.formats.drawings.curves import Bezier, Curve, EllipseArc
-from icage.formats.drawings.fill import FillRule
+from icage.formats.drawings.curves import EllipseArc
+from icage.formats.svg.lengths import Along, Measure, length, numbers
+from icage.formats.svg.path_data import Malformed, Point, Subpath, line, subpaths
+from icage.formats.svg.styles import Style
+from icage.formats.svg.xml_tree import local_name, refused
 
-Ring = list[Curve]
-Shape = tuple[FillRule, list[Ring]]
-
-MAX_CURVES: Final = 50_000
-"""Lines and curves of a drawing."""
-
-_SHOWN: Final = 60
-"""Characters of a malformed attribute in the message."""
-
-_INVISIBLE: Final = ("none", "transparent")
+SHAPES: Final = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
 
 
-def drawn_shapes(content: bytes) -> Iterator[Shape]:
-    """Fill rule and rings of every shape that is filled, transforms applied, y upwards."""
+def subpaths_of(element: Element, style: Style, measure: Measure) -> list[Subpath]:
+    """The subpaths of a shape.
+
+    Raises
+    ------
+    FormatError:
+        A malformed attribute, or a length that is not understood.
+    """
+    tag = local_name(element)
+    if tag == "path":
+        return _path(element, style)
+    if tag in ("polyline", "polygon"):
+        return _poly(element, tag == "polygon")
+    read = _Lengths(element, style, measure)
+    if tag == "rect":
+        return _rect(read)
+    if tag == "line":
+        ends = [read.attribute(name, along) for name, along in _LINE]
+        return [Subpath([line((ends[0], ends[1]), (ends[2], ends[3]))])]
+    if tag == "circle":
+        rx = ry = read.size("r", "both") or 0.0
+    else:
+        rx, ry = _radii(read)
+    return _ellipse(read.length("cx", "x"), read.length("cy", "y"), rx, ry)
+
+
+_LINE: Final[tuple[tuple[str, Along], ...]] = (("x1", "x"), ("y1", "y"), ("x2", "x"), ("y2", "y"))
+
+
+class _Lengths:
+    """Reads the lengths of one element."""
+
+    def __init__(self, element: Element, style: Style, measure: Measure) -> None:
+        self.element = element
+        self.style = style
+        self.measure = measure
+
+    def length(self, name: str, along: Along) -> float:
+        """A length, 0 if there is none."""
+        given = self.style.given(name)
+        if not given.text or given.text == "auto":
+            return 0.0
+        return length(self.element, name, given.text, along, self.measure, given.css)
+
+    def size(self, name: str, along: Along) -> float | None:
+        """A length that cannot be negative, None if there is none."""
+        given = self.style.given(name)
+        if not given.text or given.text == "auto":
+            return None
+        value = length(self.element, name, given.text, along, self.measure, given.css)
+        if value < 0.0:
+            raise refused(self.element, name, given.text, "is negative")
+        return value
+
+    def attribute(self, name: str, along: Along) -> float:
+        """A length that is an attribute only."""
+        text = self.element.get(name, "").strip() or "0"
+        return length(self.element, name, text, along, self.measure)
+
+
+def _path(element: Element, style: Style) -> list[Subpath]:
+    given = style.given("d")
+    text = given.text
+    if given.css:
+        inside = text.removeprefix("path(").removesuffix(")").strip()
+        if not text.startswith("path(") or inside[:1] not in ("'", '"'):
+            raise refused(element, "d", text)
+        text = inside[1:-1]
     try:
-        document = svg.SVG.parse(io.BytesIO(content), reify=False, on_error="raise")
-        elements: list[Any] = list(document.elements()) if document is not None else []
-    except Exception as error:  # whatever an untyped parser throws at a malformed attribute
-        raise FormatError(f"the drawing cannot be read: {_malformed(content)}") from error
-    count = 0
-    for element in elements:
-        if not isinstance(element, svg.Shape) or not _is_filled(element):
-            continue
-        rings = _rings(element)
-        count += sum(len(ring) for ring in rings)
-        if count > MAX_CURVES:
-            raise FormatError(f"the drawing has more than {MAX_CURVES} lines and curves")
-        if rings:
-            rule = str(cast(Any, element).values.get("fill-rule", "nonzero")).strip()
-            yield ("evenodd" if rule == "evenodd" else "nonzero"), rings
+        return subpaths(text)
+    except Malformed as error:
+        place = error.place
+        near = "at its end" if place > len(text) else f"at character {place}"
+        raise refused(element, "d", text, f"breaks off {near}", "malformed ") from error
 
 
-def _malformed(content: bytes) -> str:
-    """Which attribute the parser could not make sense of: its own words are no help."""
-    readers = {"d": svg.Path, "transform": svg.Matrix, "points": svg.Polygon}
-    for element in fromstring(content).iter():
-        for key, reader in readers.items():
-            value = element.get(key)
-            if value is None:
-                continue
-            try:
-                reader(value)
-            except Exception:
-                name = element.tag.rpartition("}")[2]
-                short = value if len(value) <= _SHOWN else value[:_SHOWN] + "..."
-                return f"<{name}> has a malformed {key}={short!r}"
-    return "an attribute is malformed"
+def _poly(element: Element, closed: bool) -> list[Subpath]:
+    text = element.get("points", "")
+    values = numbers(text)
+    if values is None or len(values) % 2:
+        raise refused(element, "points", text, "is no list of pairs", "malformed ")
+    if not all(map(math.isfinite, values)):
+        raise refused(element, "points", text, "is not finite")
+    points: list[Point] = list(zip(values[::2], values[1::2], strict=True))
+    edges = [line(a, b) for a, b in pairwise(points)]
+    return [Subpath([*edges], closed)] if edges else []
 
 
-def _is_filled(shape: svg.Shape) -> bool:
-    values: dict[str, Any] = cast(Any, shape).values
-    if isinstance(shape, svg.SimpleLine):
-        return False
-    if values.get("clip-path", "none") != "none":
-        raise FormatError("a shape has a clip-path, which is not supported")
-    if str(values.get("visibility", "visible")).strip() in ("hidden", "collapse"):
-        return False
-    if any(_is_zero(values.get(key)) for key in ("opacity", "fill-opacity")):
-        return False
-    return str(values.get("fill", "black")).strip().lower() not in _INVISIBLE
+def _rect(read: _Lengths) -> list[Subpath]:
+    x, y = read.length("x", "x"), read.length("y", "y")
+    w, h = read.size("width", "x") or 0.0, read.size("height", "y") or 0.0
+    rx, ry = _radii(read)
+    if w == 0.0 or h == 0.0:
+        return []
+    rx, ry = min(rx, w / 2.0), min(ry, h / 2.0)
+    if rx == 0.0 or ry == 0.0:
+        corners: list[Point] = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+        return [Subpath([line(a, b) for a, b in pairwise(corners)], True)]
+    ring = Subpath(closed=True)
+    quarter = math.pi / 2.0
+    pen: Point | None = None
+    for k, (cx, cy) in enumerate(
+        ((x + w - rx, y + ry), (x + w - rx, y + h - ry), (x + rx, y + h - ry), (x + rx, y + ry))
+    ):
+        arc = _arc(cx, cy, rx, ry, (k - 1) * quarter, quarter)
+        first, last = arc.at(np.array([0.0, 1.0])).tolist()
+        if pen is not None and pen != (first[0], first[1]):
+            ring.curves.append(line(pen, (first[0], first[1])))
+        ring.curves.append(arc)
+        pen = (last[0], last[1])
+    return [ring]
 
 
-def _is_zero(opacity: Any) -> bool:
-    try:
-        return float(str(opacity).strip().rstrip("%")) <= 0.0
-    except ValueError:
-        return False
+def _radii(read: _Lengths) -> tuple[float, float]:
+    """The radii rx and ry; where one is not given, it is the other one."""
+    rx, ry = read.size("rx", "x"), read.size("ry", "y")
+    return rx if rx is not None else ry or 0.0, ry if ry is not None else rx or 0.0
 
 
-def _rings(shape: Any) -> list[Ring]:
-    """Closed rings of curves; an open subpath is closed by a line, as a fill is."""
-    t = shape.transform
-    linear = np.array([[t.a, t.b], [t.c, t.d]], dtype=np.float64)
-    shift = np.array([t.e, t.f], dtype=np.float64)
-    flip = np.array([1.0, -1.0])
-
-    def placed(point: Any) -> FloatArray:
-        return (np.array([point.x, point.y], dtype=np.float64) @ linear + shift) * flip
-
-    def turned(offset: FloatArray) -> FloatArray:
-        return (offset @ linear) * flip
-
-    rings: list[Ring] = []
-    ring: Ring = []
-    for segment in shape.segments(transformed=False):
-        if isinstance(segment, svg.Move | svg.Close):
-            _finish(ring, rings)
-            ring = []
-        elif isinstance(segment, svg.Arc):
-            ring.append(_arc(segment, placed, turned))
-        else:
-            ring.append(Bezier(np.array([placed(point) for point in _control(segment)])))
-    _finish(ring, rings)
-    return rings
+def _ellipse(cx: float, cy: float, rx: float, ry: float) -> list[Subpath]:
+    if rx == 0.0 or ry == 0.0:
+        return []
+    return [Subpath([_arc(cx, cy, rx, ry, 0.0, 2.0 * math.pi)], True)]
 
 
-def _control(segment: Any) -> list[Any]:
-    if isinstance(segment, svg.CubicBezier):
-        return [segment.start, segment.control1, segment.control2, segment.end]
-    if isinstance(segment, svg.QuadraticBezier):
-        return [segment.start, segment.control, segment.end]
-    return [segment.start, segment.end]
-
-
-def _arc(arc: Any, placed: Any, turned: Any) -> Curve:
-    if arc.sweep == 0.0 or arc.rx == 0.0 or arc.ry == 0.0:
-        return Bezier(np.array([placed(arc.start), placed(arc.end)]))
-    rotation = float(arc.get_rotation())
-    if not math.isfinite(rotation + float(arc.sweep) + float(arc.rx) + float(arc.ry)):
-        raise FormatError("an arc of the drawing has numbers that are not finite")
-    along = np.array([math.cos(rotation), math.sin(rotation)])
-    across = np.array([-along[1], along[0]])
-    start = float(arc.get_start_t())
-    a, b = turned(float(arc.rx) * along), turned(float(arc.ry) * across)
-    return EllipseArc(placed(arc.center), a, b, start, float(arc.sweep))
-
-
-def _finish(ring: Ring, rings: list[Ring]) -> None:
-    if not ring:
-        return
-    first, last = ring[0].at(np.zeros(1)), ring[-1].at(np.ones(1))
-    rings.append([*ring, Bezier(np.vstack([last, first]))])
+def _arc(cx: float, cy: float, rx: float, ry: float, start: float, sweep: float) -> EllipseArc:
+    return EllipseArc(np.array([cx, cy]), np.array([rx, 0.0]), np.array([0.0, ry]), start, sweep)

@@ -52,7 +52,7 @@ def test_a_small_plan_is_made_of_little():
     wanted = {"numpy", "shapely"}
     loaded = loaded_by("plan", str(CASES / "pliers_best.json"))
     assert wanted <= loaded
-    assert not (HEAVY | {"llvmlite", "svgelements", "tyro", "trimesh"}) - wanted & loaded
+    assert not (HEAVY | {"llvmlite", "tinycss2", "cssselect2", "tyro", "trimesh"}) - wanted & loaded
     assert not {name for name in loaded if name.startswith("icage.contact_space")}
 
 
