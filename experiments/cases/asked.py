@@ -58,6 +58,6 @@ def case_of(args: argparse.Namespace) -> Case:
 
 
 def size_words(thing: Case) -> str:
-    """``40 x 23.1 mm, from the file's own size, in mm``."""
+    """``40 x 23.1 mm, from the file's mm``."""
     x, y = thing.outline.vertices.max(axis=0) - thing.outline.vertices.min(axis=0)
     return ", ".join(part for part in (f"{x:.6g} x {y:.6g} {thing.unit}", thing.size_from) if part)

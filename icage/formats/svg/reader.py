@@ -128,5 +128,5 @@ def _sized(drawing: Drawing, page: Page) -> Drawing:
     if page.unit is None:
         return drawing
     unit = "cm" if page.unit == "cm" else "mm"
-    size_from = f"the file's own size, in {page.unit}"
+    size_from = f"the file's {page.unit}"
     return replace(drawing, metre=_PIXEL, unit=unit, size_from=size_from)

@@ -26,10 +26,10 @@ INCH = 'width="4in" height="3in"'
 @pytest.mark.parametrize(
     ("size", "options", "unit", "wide", "words"),
     [
-        (MM, (), "mm", 40.0, "40 x 30 mm, from the file's own size, in mm"),
-        (CM, (), "cm", 4.0, "4 x 3 cm, from the file's own size, in cm"),
-        (INCH, (), "mm", 101.6, "101.6 x 76.2 mm, from the file's own size, in mm"),
-        (MM, ("--unit", "m"), "m", 0.04, "0.04 x 0.03 m, from the file's own size, in mm"),
+        (MM, (), "mm", 40.0, "40 x 30 mm, from the file's mm"),
+        (CM, (), "cm", 4.0, "4 x 3 cm, from the file's cm"),
+        (INCH, (), "mm", 101.6, "101.6 x 76.2 mm, from the file's in"),
+        (MM, ("--unit", "m"), "m", 0.04, "0.04 x 0.03 m, from the file's mm"),
         (
             MM, ("--width", "180"), "mm", 180.0,
             "from --width 180 mm (no --unit given: mm is assumed, as in the file)",
@@ -57,7 +57,7 @@ def test_the_unit_of_an_outline(
 def test_the_grasps_of_a_drawing_are_in_its_unit(tmp_path: Path, capsys: Any):
     path = drawing(tmp_path, MM)
     told = here(capsys, "grasps", path, "--top", "1")
-    assert "40 x 30 mm, from the file's own size, in mm" in told.out
+    assert "40 x 30 mm, from the file's mm" in told.out
 
 
 def test_a_case_that_names_a_drawing_stays_in_m(tmp_path: Path, capsys: Any):

@@ -137,7 +137,7 @@ def test_bad_cases(kind: str, folder: Path, square: dict[str, Any], capsys: Any)
         (("query", "L", "."), "is a folder"),
         (("query", "L", "none.csv"), "none.csv does not exist"),
         (("query", "L", "bad.csv"), "bad.csv, row 2 (line 3): sigma is -1; 0 or more is needed"),
-        (("outline", "L", "--width", "2"), "not"),
+        (("outline", "L", "--width", "2"), "L is no drawing; .svg"),
         (("outline", "none.svg", "--width", "0"), "--width: '0' is not above 0"),
         (("outline", "none.svg", "--width", "nan"), "not a finite number"),
         (("outline", "sizeless.svg"), "states no size in mm, cm or in; a width is needed"),

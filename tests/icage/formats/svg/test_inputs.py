@@ -59,7 +59,7 @@ def test_proportions(name: str, right: tuple[float, float]):
 )
 def test_sizes(name: str, wide: float):
     traced = trace(name)
-    assert (traced.unit, traced.size_from) == ("mm", "from the file's own size, in mm")
+    assert (traced.unit, traced.size_from) == ("mm", "from the file's mm")
     assert traced.outline.polygon.bounds == pytest.approx((0, 0, wide, wide))
 
 

@@ -43,7 +43,7 @@ def test_a_page_has_the_size_that_it_states(
     page = found(R, attributes)
     assert page.frame == (None if frame is None else pytest.approx(frame))
     assert (page.metre is None) == (unit is None)
-    assert page.size_from == ("" if unit is None else f"the file's own size, in {unit}")
+    assert page.size_from == ("" if unit is None else f"the file's {unit}")
 
 
 @pytest.mark.parametrize(
