@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from icage.formats.drawings.reading import ReadingOptions
+
 HELP: Final = {
     "case": "a case file, a shipped object's name, a drawing (*.svg) or an outline without a "
     "grasp, for which the best grasp is searched, or a study's TOML file",
@@ -31,5 +33,5 @@ HELP: Final = {
     "them; as often as there are inputs",
 }
 
-DRAWING: Final = ("width", "unit", "finger_radius")
+DRAWING: Final = (*ReadingOptions.__annotations__, "finger_radius")
 """What goes with a drawing in place of a case: options of the command, and no fields of a study."""

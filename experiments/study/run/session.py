@@ -11,6 +11,7 @@ from typing import Any
 
 from experiments.cases.case_files import ONE, check_case_files, write_case_files
 from experiments.cases.chosen import Chosen, chosen
+from experiments.cases.reading import reading_of, say_notes
 from experiments.cases.with_discs import physical_case
 from experiments.io.arrow_table import Table
 from experiments.io.options import check_folder
@@ -140,8 +141,14 @@ def _case(table: Mapping[str, Any], drawing: Namespace | None = None) -> Case:
     if not isinstance(name, str):
         raise ConfigError(f"case is {name!r}; a word is needed")
     which = grasp if isinstance(grasp, int) and not isinstance(grasp, bool) else None
-    options = {} if drawing is None else {key: getattr(drawing, key) for key in DRAWING}
-    return load(name, grasp=None if which == 1 else which, **options)
+    which = None if which == 1 else which
+    if drawing is None:
+        return load(name, grasp=which)
+    case = load(
+        name, grasp=which, finger_radius=drawing.finger_radius, **reading_of(drawing).given()
+    )
+    say_notes(case)
+    return case
 
 
 def run_session(
