@@ -61,6 +61,15 @@ def push(
     return Pushed(state[:, 0].copy(), velocities.copy(), accelerations.copy(), peak)
 
 
+def compile_steps(scene: Scene) -> None:
+    """Have the loops compiled, or loaded, before there is anything to close."""
+    nobody, state = np.zeros(0, dtype=np.int64), np.zeros((2, 3, 6))
+    check = StepCheck.over(scene, state[:, 0])
+    most = scene.config.computed_contacts
+    go_on(nobody, plant_of(scene), empty_room(), most, check.stride, state, np.zeros(2))
+    check.observe(nobody, state[:, 0], state[:, 1])
+
+
 def _known(scene: Scene) -> bool:
     """Whether the step is the one written down here."""
     config = scene.config

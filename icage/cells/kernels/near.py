@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first
 
 _WIDER = 100.0
 """[1] A configuration solved in doubles may sit a little inside a wall: where a finger is near no
@@ -79,7 +80,7 @@ def cells_near(pieces, z, hand, reach, most):
         found = pieces_near(pieces, x, y, reach)
         if len(found) == 0:
             found = pieces_near(pieces, x, y, _WIDER * reach)
-        near[f, : len(found)] = found
+        put_first(near[f], found, len(found))
         counts[f] = len(found)
         total *= len(found)
     if total > most:

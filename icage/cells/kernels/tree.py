@@ -30,6 +30,7 @@ from icage.cells.kernels.facet import facet_of
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first, stable_order
 
 NEITHER, SWALLOWED, SURVIVING = StartSide
 
@@ -170,7 +171,7 @@ def merge(node_birth, edges, edge_value, below):
     merges = np.empty((n, 4), np.int64)
     lows = np.empty((n, 2))
     count = 0
-    order = np.argsort(edge_value, kind="mergesort")
+    order = stable_order(edge_value)
     for e in order:
         if edge_value[e] >= below:
             break
@@ -241,7 +242,7 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
                     for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
                         if pieces.slot_neighbour[s] < 0:
                             continue
-                        other[:] = cell
+                        put_first(other, cell, 3)
                         other[i] = pieces.slot_neighbour[s]
                         if low[other[0], other[1], other[2]] >= here - cut:
                             continue
