@@ -10,13 +10,14 @@ the versions of numba and llvmlite are part of its files' names, as Python's is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from importlib import import_module
 from typing import Any, Final
 
 import llvmlite
 import numba
-import numba.np.linalg as numba_linalg
 from numba.core.event import Event, Listener, register
+from numba.core.runtime.nrt import rtsys
 
 from icage.kernels.compiling import announce
 from icage.kernels.digest import kernel_digest
@@ -51,6 +52,7 @@ def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> An
     try:
         dispatcher: Any = numba.njit(cache=True, fastmath=False, nogil=True, **options)(function)
     except RuntimeError:
+        _load_without_blas()
         dispatcher = numba.njit(fastmath=False, nogil=True, **options)(function)
         _dispatchers.append(dispatcher)
         return dispatcher
@@ -61,6 +63,7 @@ def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> An
         filename_base=f"{cache._impl.filename_base}.{suffix}",
         source_stamp=kernel_digest(),
     )
+    cache.load_overload = _without_what_compiles(cache)
     _dispatchers.append(dispatcher)
     return dispatcher
 
@@ -77,12 +80,33 @@ class _Watch(Listener):
         pass
 
 
+def _without_what_compiles(cache: Any) -> Callable[[Any, Any], Any]:
+    """How a cache finds machine code: by what runs it, without what compiles.
+
+    numba first loads all that it could compile, hundreds of functions, which takes as long as the
+    rest of it. That follows here only where nothing is found; what compiles asks for it again.
+    """
+
+    def load(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)
+        with cache._guard_against_spurious_io_errors():
+            found = cache._load_overload(signature, target)
+            if found is not None:
+                return found
+        _load_without_blas()
+        return None
+
+    return load
+
+
+@lru_cache(maxsize=1)
 def _load_without_blas() -> None:
     """Load what numba has for arrays, but not scipy.
 
     numba asks there whether scipy's BLAS is at hand, which takes as long as a plan. No kernel uses
     it, and scipy is among our requirements: for others the answer is yes, too.
     """
+    numba_linalg: Any = import_module("numba.np.linalg")
     asks = numba_linalg.ensure_blas
     numba_linalg.ensure_blas = lambda: None
     try:
@@ -91,5 +115,4 @@ def _load_without_blas() -> None:
         numba_linalg.ensure_blas = asks
 
 
-_load_without_blas()
 register("numba:compile", _Watch())

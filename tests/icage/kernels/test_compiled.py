@@ -122,3 +122,30 @@ def test_the_t_shape_of_the_theory() -> None:
     sigma_0, _, sigma_max = (float(word) for word in answer().split())
     assert sigma_0 == pytest.approx(3.3, rel=1e-12)
     assert sigma_max / sigma_0 == pytest.approx(1.96, abs=0.01)
+
+
+LOADED = """
+import sys
+import numpy as np
+from icage.kernels.compiled import machine_code_at_once
+from icage.kernels.storage import stable_order
+machine_code_at_once()
+print(*stable_order(np.array([2.0, 1.0, 2.0])))
+print("numba.np.npyimpl" in sys.modules, "scipy.linalg" in sys.modules)
+"""
+
+
+@pytest.mark.slow
+def test_machine_code_is_loaded_without_what_compiles_it(tmp_path: Path) -> None:
+    """And neither way loads scipy's linear algebra."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "ICAGE_COMPILE_BEHIND": "0"}
+
+    def words() -> list[str]:
+        done = subprocess.run(
+            [sys.executable, "-c", LOADED], check=True, capture_output=True, text=True,
+            cwd=Path(__file__).parents[3], env=environment,
+        )  # fmt: skip
+        return done.stdout.split()
+
+    assert words() == ["1", "0", "2", "True", "False"]
+    assert words() == ["1", "0", "2", "False", "False"]
