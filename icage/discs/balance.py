@@ -50,6 +50,9 @@ def pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]
     force, off = np.zeros(count), wanted
     if not count:
         return force, float(np.linalg.norm(wanted))
+    best, _, rank, _ = np.linalg.lstsq(columns, wanted, rcond=None)
+    if rank == count and best.min() > 0.0:  # all press: most often so, and nothing else to try
+        return np.asarray(best), float(np.linalg.norm(wanted - columns @ best))
     least = _ROUNDING * max(columns.shape) * float(np.abs(columns).sum(axis=0).max())
     pressing: list[int] = []
     for _ in range(_TURNS * count):
