@@ -34,7 +34,16 @@ def main(options: list[str]) -> int:
     if "--behind" in options:  # nobody waits for it
         os.nice(5)
     machine_code_at_once()
-    for job in (_plan, _plan_discs, _queries, _regions, _contact_space, _grasps, _one_hand):
+    for job in (
+        _plan,
+        _plan_discs,
+        _queries,
+        _regions,
+        _contact_space,
+        _grasps,
+        _one_hand,
+        _sublevels,
+    ):
         # what cannot be compiled here fails again where it is needed, and is heard of there
         with suppress(Exception):
             job()
@@ -77,6 +86,11 @@ def _grasps() -> None:
 def _one_hand() -> None:
     case = _case("T_best")
     grasps_of_hand(case.outline, HandShape.from_contacts(case.contacts))
+
+
+def _sublevels() -> None:
+    case = _case("T_best")
+    icage.sublevels(case.outline, case.hand)
 
 
 def _case(name: str) -> icage.Case:

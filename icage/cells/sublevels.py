@@ -12,16 +12,15 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import AnyArray, FloatArray, IntArray
 from icage.cells.free_space import FreeSpace
-from icage.cells.kernels.columns import BIRTH_WX, BORN_FINGER, BORN_SLOT
-from icage.cells.kernels.facet import middles_on_facets
 from icage.cells.kernels.inhabited import extents_of, inhabited_cells
-from icage.cells.kernels.tree import births
 from icage.cells.kernels.whole import (
     Ends,
+    LeastPoints,
     Passes,
     ends_of_minima,
+    least_hands,
     least_passes,
     least_points,
     passes_between,
@@ -37,6 +36,10 @@ from icage.tolerance import DEPTH_CUT
 MOST_CELLS = 5_000_000
 """Cells that hold a hand, beyond which their passes and merges would take more than 1 GB."""
 
+_AT_CAP = 1.0 + 1e-9
+"""[1] Passes up to this part of the cap are taken: at the cap every hand has escaped, and rounding
+must not make a hand that escapes just there one that never does."""
+
 _STRETCH = 10_000
 """Cells that a thread takes at a time: some 50 ms."""
 
@@ -44,12 +47,12 @@ Done = TypeVar("Done")
 
 
 class _Minima(NamedTuple):
-    """The minima that count, by sigma: their cells (m, 3), births, merges and ``into`` (m,)."""
+    """The minima that count, by sigma: births, merges and ``into`` (m,), contacts (m, 3, 2)."""
 
-    cells: IntArray
     births: FloatArray
     merges: FloatArray
     into: IntArray
+    contacts: FloatArray
 
 
 def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Sublevels:
@@ -71,12 +74,13 @@ def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Subleve
         births=found.births,
         merges=found.merges,
         into=found.into,
-        contacts=frame.back(_contacts(free_space, found.cells)),
+        contacts=frame.back(found.contacts),
     )
 
 
 def _minima(free_space: FreeSpace, workers: int) -> _Minima:
-    pieces, z, cap, worst = free_space.pieces, free_space.z, free_space.cap, free_space.worst
+    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
+    cap = _AT_CAP * free_space.cap
     with ThreadPoolExecutor(max_workers=workers) as threads:
         cells = _cells_with_a_hand(free_space, threads)
         row = rows_of(cells, pieces.total)
@@ -86,14 +90,14 @@ def _minima(free_space: FreeSpace, workers: int) -> _Minima:
         )  # fmt: skip
         passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
         least = least_passes(len(cells), passes.lower, passes.upper, passes.sigma)
-        lows = _shared(
+        parts = _shared(
             threads, len(cells), _STRETCH,
             lambda a, b: least_points(pieces, z, cells, least, a, b, cap, worst),
         )  # fmt: skip
-    low = np.concatenate(list(lows))
+        low = LeastPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
     order = np.argsort(passes.sigma, kind="stable")
-    ends = ends_of_minima(low, passes.lower, passes.upper, passes.sigma, order)
-    return _counted(cells, low, ends, DEPTH_CUT * pieces.diameter)
+    ends = ends_of_minima(low.sigma, passes.lower, passes.upper, passes.sigma, order)
+    return _counted(free_space, cells, low, ends)
 
 
 def _shared(
@@ -104,10 +108,10 @@ def _shared(
     return threads.map(work, begins, [min(begin + stretch, total) for begin in begins])
 
 
-def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> IntArray:
+def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> AnyArray:
     pieces = free_space.pieces
     extents = extents_of(pieces, free_space.z)
-    parts: list[IntArray] = []
+    parts: list[AnyArray] = []
     total = 0
     for part in _shared(
         threads, pieces.total, 1, lambda a, b: inhabited_cells(pieces, extents, a, b)
@@ -123,26 +127,21 @@ def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> In
     return np.concatenate(parts)
 
 
-def _counted(cells: IntArray, low: FloatArray, ends: Ends, cut: float) -> _Minima:
-    """Minima deeper than ``cut`` [unit], and no pinched hands."""
-    kept = np.flatnonzero((low > 0.0) & np.isfinite(low))
-    kept = kept[ends.merged[kept] - low[kept] > cut]
-    kept = kept[np.lexsort((ends.merged[kept], low[kept]))]
-    row_of = np.full(len(low) + 1, -1)  # the last one is for minima that never merge
+def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> _Minima:
+    """Minima deeper than the depth cut, and no pinched hands."""
+    births, merges = low.sigma, ends.merged
+    cut = DEPTH_CUT * free_space.pieces.diameter
+    kept = np.flatnonzero((births > 0.0) & (births < free_space.cap - cut))
+    kept = kept[merges[kept] - births[kept] > cut]
+    kept = kept[np.lexsort((merges[kept], births[kept]))]
+    rows = np.full(len(cells) + 1, -1)  # the last one is for minima that never merge
     # what swallows a minimum that counts is deeper and ends later, so it counts or is pinched
-    row_of[kept] = np.arange(len(kept))
-    return _Minima(cells[kept], low[kept], ends.merged[kept], row_of[ends.elder[kept]])
-
-
-def _contacts(free_space: FreeSpace, cells: IntArray) -> FloatArray:
-    """Fingers (m, 3, 2) at the least points of cells, in the middle of what is level there."""
-    pieces, z = free_space.pieces, free_space.z
-    cells = cells.astype(np.int64)
-    least = births(pieces, z, cells, free_space.cap, free_space.worst)
-    hands = middles_on_facets(
-        pieces, z, cells, least.where[:, BORN_FINGER], least.where[:, BORN_SLOT],
-        least.value[:, BIRTH_WX:],
+    rows[kept] = np.arange(len(kept))
+    hands = least_hands(
+        free_space.pieces, free_space.z, cells[kept], low.finger[kept], low.slot[kept],
+        free_space.cap, free_space.worst,
     )  # fmt: skip
     d, w = hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
     fingers = d[:, None] + w[:, None] * free_space.hand.z
-    return np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
+    contacts = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
+    return _Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts)

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.facet import facet_of
+from icage.cells.kernels.facet import MAX_BASE, facet_of, finger_on_segment
 from icage.cells.kernels.passes import new_room, pass_value
+from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
 from icage.kernels.union_find import root_of
 
@@ -24,6 +25,17 @@ class Passes(NamedTuple):
     lower: np.ndarray
     upper: np.ndarray
     sigma: np.ndarray
+
+
+class LeastPoints(NamedTuple):
+    """Least sigma (n,) of cells, and the edge of its piece that the finger is on there.
+
+    ``finger`` and ``slot`` (n,) are -1 where the least point is on a pass, or is a pinched hand.
+    """
+
+    sigma: np.ndarray
+    finger: np.ndarray
+    slot: np.ndarray
 
 
 class Ends(NamedTuple):
@@ -125,6 +137,8 @@ def least_points(pieces, z, cells, least, first, last, cap, worst):
     """
     room = new_room()
     low = least[first:last].copy()
+    at_finger = np.full(last - first, -1, np.int8)
+    at_slot = np.full(last - first, -1, np.int32)
     walls = np.empty(len(pieces.ptr) - 1, np.int64)
     for piece in range(len(walls)):
         walls[piece] = _walls(pieces, piece)
@@ -144,8 +158,36 @@ def least_points(pieces, z, cells, least, first, last, cap, worst):
                     best = low[k - first]
                     facet = facet_of(pieces, cell, i, s)
                     value = pass_value(pieces, z, facet, min(best, cap), worst, room).sigma
-                    low[k - first] = min(best, value)
-    return low
+                    if value < best:
+                        low[k - first] = value
+                        at_finger[k - first], at_slot[k - first] = i, s
+    return LeastPoints(low, at_finger, at_slot)
+
+
+@compiled
+def least_hands(pieces, z, cells, fingers, slots, cap, worst):
+    """Hands (n, 4) = d_x, d_y, w_x, w_y at the least points of cells, as of ``LeastPoints``.
+
+    In the middle of what is level in a cell.
+    """
+    room = new_room()
+    base = np.empty((MAX_BASE, 5))
+    hands = np.empty((len(cells), 4))
+    cell = np.empty(len(z), np.int64)
+    for k in range(len(cells)):
+        cell[:] = cells[k]
+        finger, slot = np.int64(fingers[k]), np.int64(slots[k])
+        if finger < 0:
+            born = birth(pieces, z, cell, cap, worst, room)
+            finger, slot, wx, wy = born.finger, born.slot, born.w_x, born.w_y
+        else:
+            found = pass_value(pieces, z, facet_of(pieces, cell, finger, slot), cap, worst, room)
+            wx, wy = found.w_x, found.w_y
+        ends = finger_on_segment(pieces, z, facet_of(pieces, cell, finger, slot), wx, wy, base)
+        hands[k, 0] = 0.5 * (ends.x_lo + ends.x_hi) - (wx * z[finger, 0] - wy * z[finger, 1])
+        hands[k, 1] = 0.5 * (ends.y_lo + ends.y_hi) - (wx * z[finger, 1] + wy * z[finger, 0])
+        hands[k, 2], hands[k, 3] = wx, wy
+    return hands
 
 
 @compiled
