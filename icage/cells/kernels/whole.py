@@ -18,6 +18,10 @@ from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
 from icage.kernels.union_find import root_of
 
+_SAME = 1e-9
+"""[diameter] Least points that two fingers tell of are one if they differ by less: far above the
+error of a pass value, and nothing more precise hangs on it."""
+
 
 class Passes(NamedTuple):
     """Passes (e,): the numbers of the cells on both sides, and the least sigma between them."""
@@ -133,7 +137,9 @@ def least_points(pieces, z, cells, least, first, last, cap, worst):
 
     At a positive minimum two fingers are held by an edge of their piece: of any two of the three
     one is. What is no pass has it on an edge that leads nowhere, so the finger with the most of
-    those is not asked.
+    those is not asked. Only of a cell without a pass all are asked: one that is empty but for a
+    hand which touches on all sides has a least point on some edges and, by rounding, no pass to
+    the cells with the same hand. Two fingers must tell of it.
     """
     room = new_room()
     low = least[first:last].copy()
@@ -143,24 +149,31 @@ def least_points(pieces, z, cells, least, first, last, cap, worst):
     for piece in range(len(walls)):
         walls[piece] = _walls(pieces, piece)
     cell = np.empty(len(z), np.int64)
+    held = np.empty(len(z))
     for k in range(first, last):
+        n = k - first
         cell[:] = cells[k]
         if cell[0] == cell[1] and cell[1] == cell[2]:
-            low[k - first] = 0.0
-        if low[k - first] == 0.0:
+            low[n] = 0.0
+        if low[n] == 0.0:
             continue
-        spared = np.argmax(walls[cell])
+        spared = np.argmax(walls[cell]) if low[n] < np.inf else -1
+        held[:] = np.inf
         for i in range(len(z)):
             if i == spared:
                 continue
             for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
-                if pieces.slot_neighbour[s] < 0:
-                    best = low[k - first]
-                    facet = facet_of(pieces, cell, i, s)
-                    value = pass_value(pieces, z, facet, min(best, cap), worst, room).sigma
-                    if value < best:
-                        low[k - first] = value
-                        at_finger[k - first], at_slot[k - first] = i, s
+                if pieces.slot_neighbour[s] >= 0:
+                    continue
+                most = min(low[n] if spared >= 0 else held[i], cap)
+                facet = facet_of(pieces, cell, i, s)
+                value = pass_value(pieces, z, facet, most, worst, room).sigma
+                held[i] = min(held[i], value)
+                if value < low[n]:
+                    low[n] = value
+                    at_finger[n], at_slot[n] = i, s
+        if spared < 0 and np.sum(held <= low[n] + _SAME * pieces.diameter) < 2:
+            low[n] = np.inf
     return LeastPoints(low, at_finger, at_slot)
 
 
