@@ -30,7 +30,8 @@ def _polar(radius: Floats, angle: Floats) -> Floats:
 
 def _star(rng: Generator) -> Floats:
     n = int(rng.integers(5, 30))
-    return _polar(rng.uniform(0.35, 1.0, n), np.sort(rng.uniform(0.0, 2.0 * np.pi, n)))
+    angle = (np.arange(n) + rng.uniform(0.1, 0.9, n)) * 2.0 * np.pi / n
+    return _polar(rng.uniform(0.35, 1.0, n), angle)
 
 
 def _symmetric_star(rng: Generator) -> Floats:
