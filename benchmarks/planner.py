@@ -286,6 +286,7 @@ def outline_of(name: str) -> Outline:
     if kind == "blob":
         for wave in range(2, 9):
             radius += 0.25 / wave * rng.normal() * np.cos(wave * angle + rng.uniform(0.0, 6.0))
+        radius = np.maximum(radius, 0.25)
     if kind == "spiky":
         radius = rng.uniform(0.05, 1.0, n)
     if kind == "spur":
