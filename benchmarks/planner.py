@@ -281,7 +281,7 @@ def outline_of(name: str) -> Outline:
             [right, 0.1 * (gap % 3)], [right, 5.0 + 0.2 * np.cos(3.0 * gap)],
         ]  # fmt: skip
         teeth = np.array([np.column_stack(row) for row in rows]).swapaxes(0, 1).reshape(-1, 2)
-        return Outline(np.vstack([[[0.0, -3.0], [n // 4, -3.0]], teeth[::-1]]))
+        return Outline(np.vstack([[[-1.0, -3.0], [n // 4, -3.0]], teeth[::-1]]))
     radius = np.ones(n)
     if kind == "blob":
         for wave in range(2, 9):

@@ -12,9 +12,9 @@ from scipy.optimize import linear_sum_assignment
 import icage
 from icage.cells import sublevels as of_cells
 from icage.errors import GraspError, HandError, InputError
+from tests.oracles.against_itself.table_of_cells import births_and_merges
 from tests.oracles.geometry import Floats
 from tests.oracles.polygons import random_polygon
-from tests.oracles.table_of_cells import births_and_merges
 from tests.zoo.shapes import VALID
 
 EXACT = 1e-9
