@@ -45,7 +45,7 @@ def main(options: list[str]) -> int:
     gc.set_threshold(50_000, 20, 100)  # a compiler leaves little garbage: a tenth of the time
     machine_code_at_once(patient=False)
     jobs = deque([_plan, _plan_discs, _queries, _starts, _regions])
-    jobs += [_other_minima, _contact_space, _grasps, _one_hand]
+    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels]
     waiting = 0
     while jobs:
         job = jobs.popleft()
@@ -111,6 +111,11 @@ def _grasps() -> None:
 def _one_hand() -> None:
     case = _case("T_best")
     grasps_of_hand(case.outline, HandShape.from_contacts(case.contacts))
+
+
+def _sublevels() -> None:
+    case = _case("T_best")
+    icage.sublevels(case.outline, case.hand)
 
 
 def _case(name: str) -> icage.Case:

@@ -64,14 +64,6 @@ class LowestCells(NamedTuple):
     birth_at: np.ndarray
 
 
-class Passes(NamedTuple):
-    """Births (m^3,) of all cells; edges (e, 4) and the levels (e,) of the passes."""
-
-    births: np.ndarray
-    edges: np.ndarray
-    values: np.ndarray
-
-
 @compiled
 def births(pieces, z, nodes, cap, worst):
     """Least sigma of every node, whose pieces are the first columns of ``nodes`` (n, 3 or more)."""
@@ -267,37 +259,3 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
         births_out[n, BIRTH_WY] = at[a, b, c, 1]
         where_out[n] = where[a, b, c]
     return LowestCells(cells[:count], births_out, where_out)
-
-
-@compiled
-def all_passes(pieces, z, cap, worst):
-    """Births of all cells, and all passes as ``merge`` wants them.
-
-    Cell (a, b, c) has the number (a m + b) m + c. Complexity: m^3 cells, some 10 passes each.
-    """
-    m = len(pieces.ptr) - 1
-    room = new_room()
-    low = np.empty(m * m * m)
-    edges = np.empty((3 * m * m * len(pieces.slot_vertex) // 2 + 1, 4), np.int64)
-    values = np.empty(len(edges))
-    cell = np.empty(3, np.int64)
-    step = np.array([m * m, m, 1])
-    e = 0
-    for number in range(m * m * m):
-        cell[0], cell[1], cell[2] = number // (m * m), number // m % m, number % m
-        low[number] = birth(pieces, z, cell, cap, worst, room).sigma
-        if low[number] == np.inf:
-            continue
-        for i in range(3):
-            for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
-                if pieces.slot_neighbour[s] <= cell[i]:
-                    continue
-                value = pass_value(pieces, z, facet_of(pieces, cell, i, s), cap, worst, room).sigma
-                if value == np.inf:
-                    continue
-                edges[e, EDGE_FROM] = number
-                edges[e, EDGE_TO] = number + (pieces.slot_neighbour[s] - cell[i]) * step[i]
-                edges[e, EDGE_FINGER], edges[e, EDGE_SLOT] = i, s
-                values[e] = value
-                e += 1
-    return Passes(low, edges[:e], values[:e])
