@@ -143,7 +143,9 @@ class CriticalHands:
         rows = features.as_hand(hands)
         order = np.argsort(np.hypot(rows[:, 2], rows[:, 3]), kind="stable")
         touched = features.touched(features.scaled(hands)[order], reach / self.size)
-        _, first = np.unique(touched, axis=0, return_index=True)
+        # of packed rows as bytes: numpy compares rows of truth values one field after another
+        packed = np.packbits(touched, axis=1)
+        _, first = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_index=True)
         found: list[Critical] = []
         for k in np.sort(first).tolist():
             v = rows[order[k]]
