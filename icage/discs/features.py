@@ -91,14 +91,14 @@ class Features:
         the edges, then the vertices.
         """
         edges = self._edges
-        off = at[:, :, None] - edges.start
-        along = (off * edges.way).sum(axis=3)
+        x, y = at[..., 0, None] - edges.start[:, 0], at[..., 1, None] - edges.start[:, 1]
+        along = x * edges.way[:, 0] + y * edges.way[:, 1]
         past_end = along - edges.length
-        gap = (off * edges.out).sum(axis=3) - self.radius
+        gap = x * edges.out[:, 0] + y * edges.out[:, 1] - self.radius
         edge = (np.abs(gap) <= reach) & (along >= -beyond) & (past_end <= beyond)
-        far = np.hypot(off[..., 0], off[..., 1])
-        arc = (np.abs(far - self.radius) <= reach) & edges.convex
-        arc &= (along <= beyond) & (np.roll(past_end, 1, axis=2) >= -beyond)
+        arc = (np.abs(np.hypot(x, y) - self.radius) <= reach) & edges.convex & (along <= beyond)
+        arc[..., 1:] &= past_end[..., :-1] >= -beyond
+        arc[..., 0] &= past_end[..., -1] >= -beyond
         return np.concatenate([edge, arc], axis=2).reshape(len(at), -1)
 
     def named(self, touched: BoolArray) -> list[Feature]:
