@@ -136,10 +136,10 @@ class HandShape:
 
     def least_gap(self, corners: list[complex]) -> float:
         """Least distance of two fingers along the polyline of w with these corners."""
-        way = np.array(corners)
+        way: ComplexArray = np.array(corners, dtype=np.complex128)
         side = way[1:] - way[:-1]
         # least |w| on each segment; one of no length is its first corner
-        along = -(way[:-1] * side.conj()).real / np.maximum(np.abs(side) ** 2, _NO_LENGTH)
+        along = -np.real(way[:-1] * np.conj(side)) / np.maximum(np.abs(side) ** 2, _NO_LENGTH)
         nearest = way[:-1] + np.clip(along, 0.0, 1.0) * side
         least = float(np.abs(nearest).min(initial=abs(corners[0])))
         return least * min(1.0, abs(self.z_3), abs(self.z_3 - 1.0))

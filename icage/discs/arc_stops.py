@@ -30,7 +30,7 @@ def unit_vectors(angle: FloatArray) -> FloatArray:
 
 
 def even_parts(turn: FloatArray, segments: int) -> IntArray:
-    """Into how many equal parts (k,) arcs (k,) [rad] are split, none over a quadrant / ``segments``.
+    """Into how many equal parts (k,) arcs (k,) [rad] are split, ``segments`` a quadrant or more.
 
     Examples
     --------

@@ -117,7 +117,8 @@ class TrueCurve:
 
     def _ring(self, arc: IntArray, at: FloatArray, reach: FloatArray) -> Outline:
         """The corners of the curve, and in each arc (element) the points at these angles [rad] from
-        its start and distances from its vertex."""
+        its start and distances from its vertex.
+        """
         every = self.elements
         over = self.ring[every.number[arc]]
         over = over + reach[:, None] * unit_vectors(every.angle[arc] + at)
@@ -128,7 +129,8 @@ class TrueCurve:
         self, segments: int, through: FloatArray | None, *, touched: bool = False
     ) -> tuple[IntArray, FloatArray]:
         """Element, ascending, and angle [rad] from its start of all points where arcs are split,
-        both ends among them."""
+        both ends among them.
+        """
         turn = self.elements.turn
         parts = even_parts(turn, segments)
         parts[turn == 0.0] = -1
@@ -149,7 +151,8 @@ class TrueCurve:
 
     def _angles(self, points: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Angles [rad] of points (k, 2) from the start of every element, and on which arcs they
-        are, (elements, k) both."""
+        are, (elements, k) both.
+        """
         every = self.elements
         off = points - self.ring[every.number, None]
         far = np.hypot(off[..., 0], off[..., 1])

@@ -68,7 +68,20 @@ class Elements(NamedTuple):
 
     def of(self, which: IntArray) -> Elements:
         """Some of them, in this order."""
-        return Elements(*(column[which] for column in self))
+        return Elements(
+            self.number[which], self.first[which], self.last[which], self.angle[which],
+            self.turn[which],
+        )  # fmt: skip
+
+    def and_then(self, other: Elements) -> Elements:
+        """These, and then others."""
+        return Elements(
+            np.concatenate([self.number, other.number]),
+            np.concatenate([self.first, other.first]),
+            np.concatenate([self.last, other.last]),
+            np.concatenate([self.angle, other.angle]),
+            np.concatenate([self.turn, other.turn]),
+        )
 
 
 class _Covered(NamedTuple):
@@ -89,8 +102,7 @@ def outer_ring(edges: Edges, radius: float, size: float) -> tuple[Elements, int]
     GeometryError:
         The elements do not close.
     """
-    lines, arcs = _lines(edges, radius, size), _arcs(edges, radius, size)
-    every = Elements(*(np.concatenate(pair) for pair in zip(lines, arcs, strict=True)))
+    every = _lines(edges, radius, size).and_then(_arcs(edges, radius, size))
     rings = [every.of(ring) for ring in _chained(every, size)]
     area = [_area(one) for one in rings]
     closed = sum(a < -_JOINED * size**2 for a in area)

@@ -32,8 +32,12 @@ from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
 SEGMENTS = (8, 24, 64)
-"""Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
+"""Segments a quadrant of the inner polygon, and of those that are tried where a level stays
 unsolved, the two polygons disagree or the bracket is wide."""
+
+_COARSE = 4
+"""Segments a quadrant of the outer polygons that are tried first: they name features and bound one
+level, and nothing else is read from them."""
 
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
@@ -65,7 +69,7 @@ def plan_discs(
     true = contacts if target is None else target.contacts
     for segments in SEGMENTS:
         look = _Polygons(curve, critical, method, contacts, true, target, segments)
-        outer = look.outer_levels()
+        outer = look.outer_levels(_COARSE) or look.outer_levels(segments)
         inner = look.inner_levels(outer)
         if isinstance(inner, Cage):
             return inner
@@ -97,6 +101,8 @@ class _Solved(NamedTuple):
     levels: TrueLevels
     through: FloatArray
     """(k, 2) contacts on arcs that the polygon was drawn through."""
+    sagitta: float
+    """[unit] How far the polygon lies off the curve at most."""
     again: bool = False
 
 
@@ -112,17 +118,17 @@ class _Polygons:
     target: Critical | None
     segments: int
 
-    def outer_levels(self, through: FloatArray | None = None) -> _Solved | None:
+    def outer_levels(self, segments: int, through: FloatArray | None = None) -> _Solved | None:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
             through = self.curve.on_arcs(self.true)
-        local_cage = self._local_cage(self._outer_polygon(through))
+        local_cage = self._local_cage(self._outer_polygon(segments, through), segments)
         if local_cage is None:
             return None
         cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
         if cage.status == "not_a_cage":
             return None
-        return self._solved(local_cage, cage, through)
+        return self._solved(local_cage, cage, through, segments)
 
     def inner_levels(self, outer: _Solved | None) -> _Solved | Cage | None:
         """The levels from chords through the contacts of their own punctures.
@@ -136,7 +142,7 @@ class _Polygons:
         last: TrueLevels | None = None
         for _ in range(_ROUNDS):
             polygon = self.curve.inner(self.segments, through)
-            local_cage = self._local_cage(polygon)
+            local_cage = self._local_cage(polygon, self.segments)
             if local_cage is None:
                 if self.target is not None:
                     return None
@@ -146,7 +152,7 @@ class _Polygons:
             cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
-            found = self._solved(local_cage, cage, through)
+            found = self._solved(local_cage, cage, through, self.segments)
             new = self._new_on_arcs(found, through)
             # other punctures of the same levels: symmetry
             if last is not None and _agree(last, found.levels):
@@ -164,7 +170,7 @@ class _Polygons:
         if coarse is None or not (levels.first_solved and levels.max_solved):
             return None
         if not _agree(levels, coarse.levels):
-            coarse = self.outer_levels(inner.through)
+            coarse = self.outer_levels(self.segments, inner.through)
             if coarse is None or not _agree(levels, coarse.levels):
                 return None
         wide = SIGMA_MAX_GAP if inner.again else _TIGHT
@@ -177,7 +183,11 @@ class _Polygons:
         if len(inner.through) > len(coarse.through) and not _near(
             outer.sigma_max, levels.sigma_max, _TIGHT
         ):
-            outer = self._local_cage(self._outer_polygon(inner.through))
+            for segments in (_COARSE, self.segments):
+                polygon = self._outer_polygon(segments, inner.through)
+                outer = self._local_cage(polygon, segments)
+                if outer is not None and _near(outer.sigma_max, levels.sigma_max, _TIGHT):
+                    break
         if outer is None:
             return None
         low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
@@ -207,7 +217,7 @@ class _Polygons:
                 work,
                 minimum_node=tuple(work.minimum_node[k] for k in levels.origin),
                 polygon_first=np.inf if levels.polygon_first is None else levels.polygon_first,
-                sagitta=self.curve.sagitta(self.segments),
+                sagitta=inner.sagitta,
             )
         return replace(
             cage,
@@ -228,23 +238,26 @@ class _Polygons:
             work=work,
         )
 
-    def _local_cage(self, polygon: Outline) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline, segments: int) -> LocalCage | None:
         arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
         hand = self.critical.hand
-        return local_cage_on(polygon, hand, self.true, self.segments, arc, self.method)
+        return local_cage_on(polygon, hand, self.true, segments, arc, self.method)
 
-    def _outer_polygon(self, through: FloatArray) -> Outline:
+    def _outer_polygon(self, segments: int, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
         curve = self.curve
         try:
-            return curve.outer(self.segments, through)
+            return curve.outer(segments, through)
         except GeometryError:
             arcs = directions_on_arcs(curve.outline, curve.radius, through)
-            return offsets(curve.outline, curve.radius, self.segments, arcs).outer
+            return offsets(curve.outline, curve.radius, segments, arcs).outer
 
-    def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> _Solved:
-        levels = true_levels(self.critical, cage, self.curve.sagitta(self.segments), self.target)
-        return _Solved(local_cage, cage, levels, through)
+    def _solved(
+        self, local_cage: LocalCage, cage: Cage, through: FloatArray, segments: int
+    ) -> _Solved:
+        sagitta = self.curve.sagitta(segments)
+        levels = true_levels(self.critical, cage, sagitta, self.target)
+        return _Solved(local_cage, cage, levels, through, sagitta)
 
     def _new_on_arcs(
         self, found: _Solved, through: FloatArray, *, hidden: bool = False
@@ -257,7 +270,7 @@ class _Polygons:
         levels = found.levels
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
         wanted = [self.true, *(p.contacts for p in ends)]
-        reach = REACH * self.curve.sagitta(self.segments)
+        reach = REACH * found.sagitta
         near = SAME * self.critical.size
         for one in hidden_minima(self.critical, found.cage, reach) if hidden else []:
             if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):
