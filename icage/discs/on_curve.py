@@ -32,12 +32,12 @@ from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
 SEGMENTS = (8, 24, 64)
-"""Segments a quadrant of the inner polygon, and of those that are tried where a level stays
+"""Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
 unsolved, the two polygons disagree or the bracket is wide."""
 
 _COARSE = 4
-"""Segments a quadrant of the outer polygons that are tried first: they name features and bound one
-level, and nothing else is read from them."""
+"""Segments a quadrant of the outer polygon that only bounds a level, tried first. For one that
+names features 4 are too few: of 600 targets two then had a wrong sigma_first or one grasp twice."""
 
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
@@ -69,7 +69,7 @@ def plan_discs(
     true = contacts if target is None else target.contacts
     for segments in SEGMENTS:
         look = _Polygons(curve, critical, method, contacts, true, target, segments)
-        outer = look.outer_levels(_COARSE) or look.outer_levels(segments)
+        outer = look.outer_levels()
         inner = look.inner_levels(outer)
         if isinstance(inner, Cage):
             return inner
@@ -118,17 +118,17 @@ class _Polygons:
     target: Critical | None
     segments: int
 
-    def outer_levels(self, segments: int, through: FloatArray | None = None) -> _Solved | None:
+    def outer_levels(self, through: FloatArray | None = None) -> _Solved | None:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
             through = self.curve.on_arcs(self.true)
-        local_cage = self._local_cage(self._outer_polygon(segments, through), segments)
+        local_cage = self._local_cage(self._outer_polygon(self.segments, through), self.segments)
         if local_cage is None:
             return None
         cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
         if cage.status == "not_a_cage":
             return None
-        return self._solved(local_cage, cage, through, segments)
+        return self._solved(local_cage, cage, through)
 
     def inner_levels(self, outer: _Solved | None) -> _Solved | Cage | None:
         """The levels from chords through the contacts of their own punctures.
@@ -152,7 +152,7 @@ class _Polygons:
             cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
-            found = self._solved(local_cage, cage, through, self.segments)
+            found = self._solved(local_cage, cage, through)
             new = self._new_on_arcs(found, through)
             # other punctures of the same levels: symmetry
             if last is not None and _agree(last, found.levels):
@@ -170,7 +170,7 @@ class _Polygons:
         if coarse is None or not (levels.first_solved and levels.max_solved):
             return None
         if not _agree(levels, coarse.levels):
-            coarse = self.outer_levels(self.segments, inner.through)
+            coarse = self.outer_levels(inner.through)
             if coarse is None or not _agree(levels, coarse.levels):
                 return None
         wide = SIGMA_MAX_GAP if inner.again else _TIGHT
@@ -252,10 +252,8 @@ class _Polygons:
             arcs = directions_on_arcs(curve.outline, curve.radius, through)
             return offsets(curve.outline, curve.radius, segments, arcs).outer
 
-    def _solved(
-        self, local_cage: LocalCage, cage: Cage, through: FloatArray, segments: int
-    ) -> _Solved:
-        sagitta = self.curve.sagitta(segments)
+    def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> _Solved:
+        sagitta = self.curve.sagitta(self.segments)
         levels = true_levels(self.critical, cage, sagitta, self.target)
         return _Solved(local_cage, cage, levels, through, sagitta)
 
