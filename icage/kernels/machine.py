@@ -47,9 +47,7 @@ def inner_dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> 
     return _dispatcher(function, f"inner.{TOOLS}", borrows, **_INNER)
 
 
-def _dispatcher(
-    function: Callable[..., Any], suffix: str, borrows: bool, **options: Any
-) -> Any:
+def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **options: Any) -> Any:
     # what counts no references cannot make an array; said of every kernel, for one that does not
     # say is compiled as its first caller is
     options |= {"fastmath": False, "nogil": True, "_nrt": not borrows}
