@@ -32,7 +32,7 @@ _dispatchers: list[Any] = []
 """All kernels of this process that have met numba."""
 
 
-def dispatcher_of(function: Callable[..., Any]) -> Any:
+def dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function, to be compiled without fast-math and cached on disk.
 
     Kernels touch no Python object, so they release its lock and threads share the cores.
@@ -40,20 +40,23 @@ def dispatcher_of(function: Callable[..., Any]) -> Any:
     Where numba may write a cache neither beside the file nor into the user's own folder, every
     process compiles for itself.
     """
-    return _dispatcher(function, TOOLS)
+    return _dispatcher(function, TOOLS, borrows)
 
 
-def inner_dispatcher_of(function: Callable[..., Any]) -> Any:
+def inner_dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function as other kernels call it."""
-    return _dispatcher(function, f"inner.{TOOLS}", **_INNER)
+    return _dispatcher(function, f"inner.{TOOLS}", borrows, **_INNER)
 
 
-def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> Any:
+def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **options: Any) -> Any:
+    # what counts no references cannot make an array; said of every kernel, for one that does not
+    # say is compiled as its first caller is
+    options |= {"fastmath": False, "nogil": True, "_nrt": not borrows}
     try:
-        dispatcher: Any = numba.njit(cache=True, fastmath=False, nogil=True, **options)(function)
+        dispatcher: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
         _load_without_blas()
-        dispatcher = numba.njit(fastmath=False, nogil=True, **options)(function)
+        dispatcher = numba.njit(**options)(function)
         _dispatchers.append(dispatcher)
         return dispatcher
     # private names of numba's, checked by a test: without them the cache would go stale unseen

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 
 _MIX = np.uint64(0x9E3779B97F4A7C15)
 
 
-@compiled
+@compiled_borrowing
 def hash_slot(keys, key):
     """Index of ``key`` in the open-addressing table, or of the free place where it belongs."""
     mask = len(keys) - 1
@@ -58,7 +58,7 @@ def stable_order(values):
     return np.argsort(values, kind="mergesort")
 
 
-@compiled
+@compiled_borrowing
 def heap_push(value, item, size, v, t):
     """Push (v, t) on a heap ordered by value, then by item (insertion order breaks ties)."""
     at = size
@@ -73,7 +73,7 @@ def heap_push(value, item, size, v, t):
     item[at] = t
 
 
-@compiled
+@compiled_borrowing
 def heap_pop(value, item, size):
     """Remove the least of ``size`` entries (read it at index 0 first)."""
     last = size - 1

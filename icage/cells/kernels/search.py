@@ -32,7 +32,7 @@ from icage.cells.kernels.columns import (
 from icage.cells.kernels.facet import facet_of, finger_on_segment
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.shrink import pivot
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.storage import (
     hash_slot,
     heap_pop,
@@ -101,7 +101,7 @@ class Explored(NamedTuple):
     values: np.ndarray
 
 
-@compiled
+@compiled_borrowing
 def birth(pieces, z, cell, cap, worst, room):
     """Least sigma of a cell (3,) and where.
 
@@ -129,7 +129,7 @@ def birth(pieces, z, cell, cap, worst, room):
     return Birth(best, wx, wy, at_finger, at_slot)
 
 
-@compiled
+@compiled_borrowing
 def _least_on_walls(pieces, z, cell, least, worst, room):
     """Least sigma with finger 1 or 2 on an edge that leads nowhere, or ``least`` if that is less.
 

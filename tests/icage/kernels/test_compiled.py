@@ -9,11 +9,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from icage.cells.kernels.search import explore
 from icage.kernels import compiled as module
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.digest import kernel_digest
 from icage.kernels.machine import TOOLS
 
@@ -149,3 +150,32 @@ def test_machine_code_is_loaded_without_what_compiles_it(tmp_path: Path) -> None
 
     assert words() == ["1", "0", "2", "True", "False"]
     assert words() == ["1", "0", "2", "False", "False"]
+
+
+@compiled
+def _of_an_own_array(values):  # type: ignore[no-untyped-def]
+    own = np.zeros(3)
+    own[1] = values[0]
+    return own.sum()
+
+
+@compiled_borrowing
+def _of_another(values):  # type: ignore[no-untyped-def]
+    return 2.0 * _of_an_own_array(values)
+
+
+@compiled_borrowing
+def _array(values):  # type: ignore[no-untyped-def]
+    return np.zeros(len(values))
+
+
+def test_a_kernel_that_borrows_may_call_one_that_makes_arrays() -> None:
+    assert _of_another.dispatcher(np.array([1.5])) == 3.0  # type: ignore[attr-defined]
+
+
+def test_a_kernel_that_borrows_cannot_make_an_array() -> None:
+    """References to it would be counted by nobody: it does not compile."""
+    import numba
+
+    with pytest.raises(numba.TypingError):
+        _array.dispatcher(np.array([1.5]))  # type: ignore[attr-defined]
