@@ -132,9 +132,19 @@ def test_the_same_diagram_as_the_table_of_all_cells(family: str, first: int) -> 
         rng = np.random.default_rng([14, number])
         outline, hand = icage.Outline(FAMILIES[family](rng)), _hand(rng)
         found = icage.sublevels(outline, hand)
-        table = births_and_merges(outline, hand)
-        assert _apart(_diagram(found), table) <= EXACT * outline.diameter, number
         _is_a_forest(found)
+        if _table_apart(outline, hand) > EXACT * outline.diameter:
+            # Where exact symmetry holds a hand at more points than it needs, rounding alone says
+            # whether it is shut off. Then they must agree as soon as the symmetry is broken.
+            for _ in range(3):
+                near = outline.vertices + 1e-9 * rng.standard_normal(outline.vertices.shape)
+                apart = _table_apart(icage.Outline(near), hand)
+                assert family.startswith("symmetric"), number
+                assert apart <= EXACT * outline.diameter, number
+
+
+def _table_apart(outline: icage.Outline, hand: icage.HandShape) -> float:
+    return _apart(_diagram(icage.sublevels(outline, hand)), births_and_merges(outline, hand))
 
 
 def _is_a_forest(found: icage.Sublevels) -> None:
