@@ -34,6 +34,9 @@ class EndingCode(IntEnum):
 
 RUNNING, SETTLED, PINCHED, TIMED_OUT, DIVERGED = EndingCode
 
+_RUNNING = int(RUNNING)
+"""Numpy looks for six special methods of an enum at every comparison, and of a number for none."""
+
 ENDINGS = tuple(code.name.lower() for code in EndingCode)
 """The words for the codes, in their order: those of files and reports."""
 
@@ -265,7 +268,7 @@ class StepCheck:
     @property
     def running(self) -> IntArray:
         """Ids of the closings that have not ended."""
-        return np.flatnonzero(self.ending == RUNNING)
+        return np.flatnonzero(self.ending == _RUNNING)
 
     @property
     def touches(self) -> FloatArray:

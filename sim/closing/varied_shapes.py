@@ -190,12 +190,13 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
             bad = np.union1d(bad, lost).astype(np.int64)
         if rest is not None:
             rest.look(running[rough[running]], positions, velocities)
-        first, left = 0, []
+        left: list[IntArray] = []
+        first = 0
         for part in parts:
             last = first + len(part.rows)
             left.append(_look(part, first, last, positions, velocities, rest, bad))
             first = last
-        running = np.concatenate(left)
+        running = np.concatenate(left) if len(left) > 1 else left[0]
     return _read_off(parts, starts, batch, peak)
 
 
