@@ -21,6 +21,11 @@ _ROUNDING = 10.0 * float(np.finfo(np.float64).eps)
 _TURNS = 3
 """Columns that are taken up, over their number; more is going round in the circles of rounding."""
 
+_APART = 1e-4
+"""[1] Least over largest singular value of columns all of which may press at once. Of columns that are
+nearly alike, as where an arc goes over into its edge, one is enough, and only taking them up one by
+one finds that."""
+
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -50,8 +55,9 @@ def pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]
     force, off = np.zeros(count), wanted
     if not count:
         return force, float(np.linalg.norm(wanted))
-    best, _, rank, _ = np.linalg.lstsq(columns, wanted, rcond=None)
-    if rank == count and best.min() > 0.0:  # all press: most often so, and nothing else to try
+    best, _, rank, size = np.linalg.lstsq(columns, wanted, rcond=None)
+    apart = rank == count and size[-1] > _APART * size[0]
+    if apart and best.min() > 0.0:  # all press: most often so, and nothing else to try
         return np.asarray(best), float(np.linalg.norm(wanted - columns @ best))
     least = _ROUNDING * max(columns.shape) * float(np.abs(columns).sum(axis=0).max())
     pressing: list[int] = []
