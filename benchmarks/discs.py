@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from icage.errors import IcageError
+from icage.kernels.compiled import machine_code_at_once
 from icage.outline import Outline
 from icage.planner import plan
 from tests.oracles.geometry import Floats, Ring
@@ -100,6 +101,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", type=Path, help="write the figures")
     options = parser.parse_args()
+    machine_code_at_once()
     rng = np.random.default_rng(options.seed)
     rows: list[dict[str, object]] = []
     for n in SIZES:

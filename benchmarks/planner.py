@@ -8,7 +8,10 @@ Processor seconds. Every figure is also given as a ratio to a yardstick measured
 - ``--growth``: one plan by either method on stars with 20 to 600 vertices: least, median and
   largest of the targets, and the exponent of a fitted power of n;
 - ``--round``: one plan by either method on round objects, each in a process of its own with its
-  peak memory.
+  peak memory;
+- ``--sublevels``: all minima and merges of the equilateral hand on outlines of up to 300 vertices,
+  each in a process of its own: seconds with one thread and, of the clock and of the processor,
+  with as many as there are cores; peak memory.
 
 ``python -m benchmarks --only planner --compare`` compares with the committed baseline.
 """
@@ -36,6 +39,8 @@ from icage.cells.regions import caging_regions
 from icage.cells.target import contacts_as_configuration, find_target
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.wanted import Wanted
+from icage.hand import HandShape
+from icage.hand_sublevels import sublevels
 from icage.kernels.compiled import machine_code_at_once
 from icage.outline import Outline
 from icage.planner import MethodName, plan
@@ -59,6 +64,12 @@ ROUND = {
 METHODS: tuple[MethodName, ...] = ("cells", "contact-space")
 ONE_METHOD = ("regular_1000", "gear_240")
 """Round objects on which the contact space is not asked: minutes."""
+
+SUBLEVELS = (
+    "star_80", "star_150", "star_300", "blob_300", "comb_300", "regular_300", "gear_300",
+    "spiky_300", "spur_300",
+)  # fmt: skip
+"""Outlines of ``sublevels``: a shape and its vertices; a spur has equal spikes, the worst case."""
 
 _SHARE = 20
 """Features that may come first in a triple of those from which targets are drawn."""
@@ -254,6 +265,71 @@ def rounds() -> dict[str, float]:
     return figures
 
 
+def outline_of(name: str) -> Outline:
+    """An outline of ``SUBLEVELS``."""
+    kind, _, count = name.partition("_")
+    n = int(count)
+    angle = 2.0 * np.pi * np.arange(n) / n
+    rng = np.random.default_rng(5)
+    if kind == "star":
+        return star(n, rng)
+    if kind == "comb":
+        gap = np.arange(n // 4)
+        left, right = gap.astype(np.float64), gap + 0.5
+        rows = [
+            [left, 5.0 + 0.3 * np.sin(gap)], [left, 0.1 * (gap % 3)],
+            [right, 0.1 * (gap % 3)], [right, 5.0 + 0.2 * np.cos(3.0 * gap)],
+        ]  # fmt: skip
+        teeth = np.array([np.column_stack(row) for row in rows]).swapaxes(0, 1).reshape(-1, 2)
+        return Outline(np.vstack([[[-1.0, -3.0], [n // 4, -3.0]], teeth[::-1]]))
+    radius = np.ones(n)
+    if kind == "blob":
+        for wave in range(2, 9):
+            radius += 0.25 / wave * rng.normal() * np.cos(wave * angle + rng.uniform(0.0, 6.0))
+        radius = np.maximum(radius, 0.25)
+    if kind == "spiky":
+        radius = rng.uniform(0.05, 1.0, n)
+    if kind == "spur":
+        radius[1::2] = 0.3
+    if kind == "gear":
+        radius[np.arange(n) % 20 >= 10] = 0.85
+    return Outline(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+
+
+def one_sublevels(name: str) -> dict[str, float]:
+    """Seconds of all minima and merges (least of up to three), peak memory, what was found."""
+    outline, hand = outline_of(name), HandShape.from_angles_deg(60.0, 120.0)
+    found = sublevels(outline, hand)  # compiled or loaded now, and its memory taken
+    figures = {"vertices": float(len(outline)), "minima": float(len(found))}
+    clock, processor, alone = [], [], []
+    begun = time.process_time()
+    while not alone or (len(alone) < 3 and time.process_time() - begun < 30.0):
+        alone.append(timed(partial(sublevels, workers=1), outline, hand))
+        started = time.perf_counter()
+        processor.append(timed(sublevels, outline, hand))
+        clock.append(time.perf_counter() - started)
+    return figures | {
+        "seconds_alone": min(alone),
+        "seconds_processor": min(processor),
+        "seconds_clock": min(clock),
+        "peak_MB": peak_of_this_program(),
+    }
+
+
+def whole_sublevels() -> dict[str, float]:
+    """``sublevels_<outline>_<figure>``, each outline in a process of its own."""
+    figures: dict[str, float] = {}
+    for name in SUBLEVELS:
+        asked = [sys.executable, "-m", "benchmarks.planner", "--one-sublevels", name]
+        answer = subprocess.run(asked, check=True, capture_output=True, text=True)
+        row = json.loads(answer.stdout)
+        print(f"{name}: {row}", flush=True)
+        for figure in ("seconds_alone", "seconds_processor", "seconds_clock"):
+            figures[f"sublevels_{name}_{figure}"] = row[figure]
+        figures[f"sublevels_{name}_MB"] = row["peak_MB"]
+    return figures
+
+
 def main() -> int:
     """Measure (once before, to warm up) and print; ``python -m benchmarks`` compares."""
     parser = argparse.ArgumentParser(
@@ -263,8 +339,13 @@ def main() -> int:
     parser.add_argument("--growth", action="store_true", help="and plans of 20 to 600 vertices")
     parser.add_argument("--round", action="store_true", help="and round objects")
     parser.add_argument("--one-round", nargs=2, metavar=("OBJECT", "METHOD"))
+    parser.add_argument("--sublevels", action="store_true", help="and all minima of a hand")
+    parser.add_argument("--one-sublevels", metavar="OUTLINE", choices=SUBLEVELS)
     options = parser.parse_args()
     machine_code_at_once()
+    if options.one_sublevels:
+        print(json.dumps(one_sublevels(options.one_sublevels)))
+        return 0
     if options.one_round:
         name, method = options.one_round
         print(json.dumps(one_round(name, method)))
@@ -276,6 +357,8 @@ def main() -> int:
         figures |= growth()
     if options.round:
         figures |= rounds()
+    if options.sublevels:
+        figures |= whole_sublevels()
     print(f"{'figure':<46} {'value':>12} {'/ yardstick':>12}")
     for name, value in figures.items():
         unit = 1.0 if name.endswith(("MB", "exponent")) else figures["yardstick"]

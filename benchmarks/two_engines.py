@@ -29,6 +29,7 @@ from icage.cells.target import contacts_as_configuration, find_target
 from icage.contact_space.exploration import Plane, explore_from
 from icage.contact_space.target import find_contact_target
 from icage.hand import HandShape
+from icage.kernels.compiled import machine_code_at_once
 from icage.tolerance import TARGET_SHIFT, TARGET_TURN
 
 BASELINE = Path(__file__).with_name("two_engines_baseline.json")
@@ -103,6 +104,7 @@ def main() -> int:
     parser.add_argument("--figure", type=Path)
     parser.add_argument("--update-baseline", action="store_true")
     options = parser.parse_args()
+    machine_code_at_once()
     measure((20,), 2)
     rows = measure(SIZES, options.count)
     base = json.loads(BASELINE.read_text()) if BASELINE.exists() else rows

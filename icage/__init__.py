@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from icage.grasps.regrasp import regrasp
     from icage.grasps.wanted import HandLimits
     from icage.hand import HandShape, Placement
+    from icage.hand_sublevels import sublevels
+    from icage.minima import Sublevels
     from icage.outline import Outline
     from icage.placement_class import PlacementClass
     from icage.planner import plan
@@ -45,10 +47,12 @@ _WHERE = {
     "Placement": "icage.hand",
     "PlacementClass": "icage.placement_class",
     "Puncture": "icage.cage",
+    "Sublevels": "icage.minima",
     "load": "icage.formats.load",
     "plan": "icage.planner",
     "read_cage": "icage.formats.cage_json",
     "regrasp": "icage.grasps.regrasp",
+    "sublevels": "icage.hand_sublevels",
 }
 
 __all__ = [
@@ -65,10 +69,12 @@ __all__ = [
     "Placement",
     "PlacementClass",
     "Puncture",
+    "Sublevels",
     "load",
     "plan",
     "read_cage",
     "regrasp",
+    "sublevels",
 ]
 
 

@@ -7,21 +7,30 @@ the list of what is ready is written. [docs/decisions/0009-cold-start.md]
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
+from collections import deque
 from contextlib import suppress
+from time import sleep
+from typing import Final
 
 import numpy as np
 
 import icage
+from icage.cells.free_space import FreeSpace
 from icage.cells.membership import query
+from icage.cells.target import contacts_as_configuration, is_local_minimum, plateau_through
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
-from icage.kernels import background
+from icage.kernels import background, claims
 from icage.kernels.compiled import machine_code_at_once, with_machine_code
 from icage.sampling import draw_starts
 from models import CASES
+
+_LOOK: Final = 0.1
+"""[s] Between two looks for a kernel that another process has in hand."""
 
 
 def main(options: list[str]) -> int:
@@ -33,11 +42,24 @@ def main(options: list[str]) -> int:
             return 0
     if "--behind" in options:  # nobody waits for it
         os.nice(5)
-    machine_code_at_once()
-    for job in (_plan, _plan_discs, _queries, _regions, _contact_space, _grasps, _one_hand):
-        # what cannot be compiled here fails again where it is needed, and is heard of there
-        with suppress(Exception):
-            job()
+    gc.set_threshold(50_000, 20, 100)  # a compiler leaves little garbage: a tenth of the time
+    machine_code_at_once(patient=False)
+    jobs = deque([_plan, _plan_discs, _queries, _starts, _regions])
+    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels]
+    waiting = 0
+    while jobs:
+        job = jobs.popleft()
+        try:
+            # what cannot be compiled here fails again where it is needed, and is heard of there
+            with suppress(Exception):
+                job()
+        except claims.Busy:  # somebody has that kernel in hand: another job meanwhile
+            jobs.append(job)
+            waiting += 1
+            if waiting >= len(jobs):
+                sleep(_LOOK)
+            continue
+        waiting = 0
         background.write_list(with_machine_code(), complete=False)
     background.write_list(with_machine_code(), complete=True)
     return 0
@@ -51,11 +73,14 @@ def _plan_discs() -> None:
     icage.plan(_case("disc_Y"))
 
 
+def _starts() -> None:
+    for name in ("T_best", "disc_Y"):
+        draw_starts(icage.plan(_case(name)), "guaranteed", 20, np.random.default_rng(0))
+
+
 def _regions() -> None:
     for name in ("T_best", "disc_Y"):
-        cage = icage.plan(_case(name))
-        cage.regions("sigma_first")
-        draw_starts(cage, "guaranteed", 20, np.random.default_rng(0))
+        icage.plan(_case(name)).regions("sigma_first")
 
 
 def _queries() -> None:
@@ -63,6 +88,15 @@ def _queries() -> None:
         cage = icage.plan(_case(name))
         rows = cage.target_placement.as_array() * np.linspace(1.0, 2.0, 50)[:, None]
         query(cage, rows).grasps_of(0)
+
+
+def _other_minima() -> None:
+    """What a plan asks where there are several minima, or a shallow one."""
+    cage = icage.plan(_case("T_best"))
+    free_space = FreeSpace.around(cage.outline, cage.hand)
+    here = contacts_as_configuration(free_space, cage.contacts)
+    is_local_minimum(free_space, here, cage.sigma_0)
+    plateau_through(free_space, here, cage.sigma_0)
 
 
 def _contact_space() -> None:
@@ -77,6 +111,11 @@ def _grasps() -> None:
 def _one_hand() -> None:
     case = _case("T_best")
     grasps_of_hand(case.outline, HandShape.from_contacts(case.contacts))
+
+
+def _sublevels() -> None:
+    case = _case("T_best")
+    icage.sublevels(case.outline, case.hand)
 
 
 def _case(name: str) -> icage.Case:

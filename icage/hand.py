@@ -10,7 +10,6 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, field
-from itertools import pairwise
 from numbers import Complex
 
 import numpy as np
@@ -18,6 +17,9 @@ import numpy as np
 from icage.arrays import ComplexArray, FloatArray, read_only, real_numbers
 from icage.checks import a_number
 from icage.errors import HandError, PlacementError
+
+_NO_LENGTH = 1e-300
+"""[unit^2] Square of the length of a step that is none: keeps 0 from being divided by 0."""
 
 _FLATTEST = 1e-6
 """[1] Least height over the longest side, as a part of that side, that we accept as a triangle: of
@@ -134,7 +136,12 @@ class HandShape:
 
     def least_gap(self, corners: list[complex]) -> float:
         """Least distance of two fingers along the polyline of w with these corners."""
-        least = min((_least_norm(a, b) for a, b in pairwise(corners)), default=abs(corners[0]))
+        way: ComplexArray = np.array(corners, dtype=np.complex128)
+        side = way[1:] - way[:-1]
+        # least |w| on each segment; one of no length is its first corner
+        along = -np.real(way[:-1] * np.conj(side)) / np.maximum(np.abs(side) ** 2, _NO_LENGTH)
+        nearest = way[:-1] + np.clip(along, 0.0, 1.0) * side
+        least = float(np.abs(nearest).min(initial=abs(corners[0])))
         return least * min(1.0, abs(self.z_3), abs(self.z_3 - 1.0))
 
     def relabelled(self, first: int) -> HandShape:
@@ -149,15 +156,6 @@ class HandShape:
         w = rows[..., 3] * np.exp(1j * rows[..., 2])
         f = d[..., None] + w[..., None] * self.z
         return np.stack([f.real, f.imag], axis=-1)
-
-
-def _least_norm(a: complex, b: complex) -> float:
-    """Least |w| on the segment from a to b."""
-    side = b - a
-    if abs(side) == 0.0:
-        return abs(a)
-    t = float(np.clip(-(a * np.conj(side)).real / abs(side) ** 2, 0.0, 1.0))
-    return abs(a + t * side)
 
 
 @dataclass(frozen=True, slots=True)

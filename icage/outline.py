@@ -159,7 +159,7 @@ def _diameter(points: FloatArray) -> float:
     """Largest distance between two vertices."""
     hull = points
     if len(points) >= _FEW:
-        hull = shapely.get_coordinates(shapely.MultiPoint(points).convex_hull)
+        hull = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(points)))
     largest = 0.0
     for k in range(0, len(hull), _ROWS):
         x, y = (hull[k : k + _ROWS, None] - hull[None, k:]).transpose(2, 0, 1)

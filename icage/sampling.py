@@ -37,7 +37,11 @@ TRIES_PER_START = 100_000
 """Hands tried per start asked for before giving up: the rates seen are 1e-3 to 0.2."""
 
 _CHUNK = 25_000
-"""Hands tried at once."""
+"""Hands whose random numbers are drawn at once."""
+
+_FEWEST = 4
+"""Hands looked at together per placement that is wanted: of the sets seen, a sixth to a
+thirty-fourth of the hands is in the set."""
 
 _GAP = 0.02
 """[1] Bounds of the regions this close cost little time and a few more tries."""
@@ -126,7 +130,7 @@ def draw_starts(
     found: list[FloatArray] = []
     have, tried, limit = 0, 0, TRIES_PER_START * count
     while have < count and tried < limit:
-        rows, places = box.some_of(rng, cage, which, _CHUNK)
+        rows, places = box.some_of(rng, cage, which, _CHUNK, count - have)
         if have + len(rows) >= count:  # tries after the last start taken do not count
             rows = rows[: count - have]
             tried += int(places[len(rows) - 1]) + 1 if len(rows) else 0
@@ -178,31 +182,81 @@ class Box:
         return cls(z, (i, j), areas, third, floor * _LEAST_SIGMA, top)
 
     def some_of(
-        self, rng: np.random.Generator, cage: Cage, which: StartSet, tries: int
+        self, rng: np.random.Generator, cage: Cage, which: StartSet, tries: int, wanted: int
     ) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Placements (k, 4) of the set among ``tries`` hands, and which of the hands they were."""
-        rows = self._hands(rng, tries)
-        keep = rng.random(tries) * rows[:, 3] < self.floor
+        """Placements (k, 4) of the set among ``tries`` hands, and which of the hands they were.
+
+        In the order of the hands, the first ``wanted`` of them for certain. All random numbers are
+        drawn, but no more hands are looked at than it takes to find so many.
+        """
+        one, other = (_Uniform.of_size(rng, tries) for _ in self.areas)
+        kept = rng.random(tries)
+        rows, places = [np.empty((0, 4))], [np.empty(0, dtype=np.int64)]
+        found, begin, size = 0, 0, _FEWEST * wanted
+        while found < wanted and begin < tries:
+            here = slice(begin, min(begin + size, tries))
+            some, at = self._of_the_set(cage, which, one.part(here), other.part(here), kept[here])
+            rows.append(some)
+            places.append(begin + at)
+            found, begin = found + len(some), here.stop
+            size = _FEWEST * wanted + (wanted - found) * begin // max(found, 1)
+        return np.concatenate(rows), np.concatenate(places)
+
+    def _of_the_set(
+        self, cage: Cage, which: StartSet, one: _Uniform, other: _Uniform, kept: FloatArray
+    ) -> tuple[FloatArray, NDArray[np.int64]]:
+        """Placements (k, 4) of the set among hands (n) of these random numbers, and which ones."""
+        d, w = self._hands(one, other)
+        sigma = np.abs(w)
         # A hand smaller than the floor would have to be kept more than once: there is none in the
         # set, or the floor is wrong.
-        too_small = np.flatnonzero(rows[:, 3] < self.floor)
-        if len(too_small) and _belongs(cage, which, rows[too_small]).any():
+        too_small = np.flatnonzero(sigma < self.floor)
+        if len(too_small) and _belongs(cage, which, _placements(d, w, too_small)).any():
             raise GeometryError(f"a placement of the {which} set below its least sigma")
-        places = np.flatnonzero(keep & (rows[:, 3] >= self.floor) & (rows[:, 3] < self.top))
-        rows = rows[places]
+        keep = (kept * sigma < self.floor) & (sigma >= self.floor) & (sigma < self.top)
+        places = np.flatnonzero(keep)
+        rows = _placements(d, w, places)
         at = cage.hand.fingers(rows)[:, 3 - sum(self.pair)]
         near = shapely.contains_xy(self.third, at[:, 0], at[:, 1])
         rows, places = rows[near], places[near]
         inside = _belongs(cage, which, rows)
         return rows[inside], places[inside]
 
-    def _hands(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Placements (count, 4), uniform in dx dy sigma dsigma dtheta over the two regions."""
+    def _hands(
+        self, one: _Uniform, other: _Uniform
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Hands as d and w (n,), uniform in dx dy sigma dsigma dtheta over the two regions."""
         i, j = self.pair
-        f_i, f_j = (area.points(rng, count) for area in self.areas)
+        f_i, f_j = self.areas[0].points(one), self.areas[1].points(other)
         w = (f_j - f_i) / (self.z[j] - self.z[i])
-        d = f_i - w * self.z[i]
-        return np.column_stack([d.real, d.imag, np.angle(w), np.abs(w)])
+        return f_i - w * self.z[i], w
+
+
+def _placements(
+    d: NDArray[np.complex128], w: NDArray[np.complex128], places: NDArray[np.int64]
+) -> FloatArray:
+    """Placements (k, 4) of some of the hands d + w z."""
+    d, w = d[places], w[places]
+    return np.column_stack([d.real, d.imag, np.angle(w), np.abs(w)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Uniform:
+    """Numbers in [0, 1) for points of a region: ``triangle`` (n,) says which, ``within`` (2, n)
+    where in it.
+    """
+
+    triangle: FloatArray
+    within: FloatArray
+
+    @classmethod
+    def of_size(cls, rng: np.random.Generator, count: int) -> _Uniform:
+        """Draw them for ``count`` points."""
+        return cls(rng.random(count), rng.random((2, count)))
+
+    def part(self, here: slice) -> _Uniform:
+        """Those of some of the points."""
+        return _Uniform(self.triangle[here], self.within[:, here])
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,11 +276,11 @@ class _Area:
         rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
         return cls(rings[..., 0] + 1j * rings[..., 1], np.cumsum(areas))
 
-    def points(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
-        """Points (count,), uniform over the region."""
-        at = np.searchsorted(self.cumulative, rng.random(count) * self.cumulative[-1], "right")
+    def points(self, uniform: _Uniform) -> NDArray[np.complex128]:
+        """Points (n,), uniform over the region."""
+        at = np.searchsorted(self.cumulative, uniform.triangle * self.cumulative[-1], "right")
         a, b, c = self.corners[np.minimum(at, len(self.corners) - 1)].T
-        u, v = rng.random((2, count))
+        u, v = np.array(uniform.within)
         over = u + v > 1.0
         u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
         return a + u * (b - a) + v * (c - a)
@@ -234,7 +288,7 @@ class _Area:
 
 def region_points(region: Region, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
     """Points (count,), uniform over a region."""
-    return _Area.of(region).points(rng, count)
+    return _Area.of(region).points(_Uniform.of_size(rng, count))
 
 
 def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:

@@ -8,5 +8,5 @@ Unit: TypeAlias = Literal["m", "mm", "cm"]
 
 UNITS: Final[tuple[Unit, ...]] = ("m", "mm", "cm")
 
-METRES: Final[dict[Unit, float]] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
+METRES: Final[dict[str, float]] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
 """[m] One of each."""

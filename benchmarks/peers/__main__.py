@@ -28,6 +28,7 @@ from benchmarks.peers.question import Question
 from benchmarks.timing import REPEATS, Spread, interleaved, peak_memory, spread
 from icage.case import Case
 from icage.formats.load import load
+from icage.kernels.compiled import machine_code_at_once
 from icage.planner import plan
 from models import CASES, OBJECTS
 
@@ -57,6 +58,7 @@ def main() -> int:
     options = parser.parse_args()
     if options.check:
         return _check()
+    machine_code_at_once()
     samples = SAMPLES[:1] if options.quick else SAMPLES
     rows = measure(1 if options.quick else options.repeats, samples)
     memory = measure_memory(samples)

@@ -1,10 +1,11 @@
-"""The objects of a folder: which files may hold one, and what each is as it is read."""
+"""Many objects: which files may hold one, and what each is as it is read."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, NoReturn
@@ -14,6 +15,7 @@ from experiments.collection.options import SearchOptions
 from experiments.io.one_line import one_line
 from icage.case import Case
 from icage.errors import InputError
+from icage.formats.drawings.read import is_drawing
 from icage.formats.load import load_object
 
 DRAWINGS: Final = ".svg"
@@ -31,7 +33,7 @@ class Readable:
     Attributes
     ----------
     file:
-        Where it is from, below the folder, with slashes.
+        Its name in the table, with slashes: where it is below the folder it was found in.
     digest:
         Of the object as it was read: with another one, rows of it are those of another object.
     seed:
@@ -54,28 +56,74 @@ class Unreadable:
     why: str
 
 
-def object_files(folder: Path) -> list[tuple[str, Path]]:
-    """Drawings and case files of a folder and of those in it, by name, in the order of the table.
+def object_files(given: Sequence[Path]) -> list[tuple[str, Path]]:
+    """Drawings and case files, by name, in the order of the table: files that are given, and those
+    of folders and of the folders in them.
 
-    Hidden files and folders are left out; links to folders are not followed.
+    A file of a folder is named by where it is below that, any other by its name alone: so as if
+    all lay in one folder. In folders hidden files and folders are left out, and links to folders
+    not followed.
 
     Raises
     ------
     InputError:
-        There is none, or a folder cannot be looked into.
+        What is given is not there or no object can be in it, a folder cannot be looked into, or
+        two files have one name.
     """
+    found: dict[str, Path] = {}
+    for place in given:
+        for name, path in _files_of(place):
+            if name in found:
+                raise InputError(_twice(name, found[name], path))
+            found[name] = path
+    return sorted(found.items())
+
+
+def _twice(name: str, one: Path, other: Path) -> str:
+    if one.absolute() == other.absolute():
+        return f"{str(one)!r} is given twice"
+    return (
+        f"{str(one)!r} and {str(other)!r} are both {name!r} in the table; two files of one name "
+        "need a table each, or a folder that holds both of their folders"
+    )
+
+
+def _files_of(place: Path) -> list[tuple[str, Path]]:
+    """Name in the table and path of a file, or of each in a folder."""
+    try:
+        if place.is_dir():
+            return _in_folder(place)
+        place.lstat()
+    except (OSError, ValueError) as error:
+        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise InputError(
+            f"{str(place)!r} is no file and no folder to look into: {why.lower()}"
+        ) from error
+    if not _may_hold_one(place):
+        raise InputError(f"{str(place)!r} is no drawing (*.svg) and no case file (*.json)")
+    return [(_in_table(place.name), place)]
+
+
+def _in_folder(folder: Path) -> list[tuple[str, Path]]:
     found: list[tuple[str, Path]] = []
     for place, folders, names in os.walk(folder, onerror=_unseen):
         folders[:] = [name for name in folders if not name.startswith(".")]
         for name in names:
             path = Path(place, name)
-            if not name.startswith(".") and path.suffix.lower() in (DRAWINGS, CASES):
-                below = path.relative_to(folder).as_posix()
-                text = os.fsencode(below).decode("utf-8", "backslashreplace")
-                found.append((text, path))
+            if not name.startswith(".") and _may_hold_one(path):
+                found.append((_in_table(path.relative_to(folder).as_posix()), path))
     if not found:
         raise InputError(f"{str(folder)!r} holds no drawing (*.svg) and no case file (*.json)")
-    return sorted(found)
+    return found
+
+
+def _may_hold_one(path: Path) -> bool:
+    return path.suffix.lower() in (DRAWINGS, CASES)
+
+
+def _in_table(name: str) -> str:
+    """A file's name as the table can hold it, whatever bytes it is made of."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 def _unseen(error: OSError) -> NoReturn:
@@ -88,8 +136,9 @@ def read_one(file: str, path: Path, options: SearchOptions) -> Readable | Unread
     try:
         case = _read(path, options)
     except Exception as error:
-        # a file's name below the folder says enough, and it is the same wherever the folder is
-        why = reason(error).replace(f"{path.parent}{os.sep}", "").removeprefix(f"{path.name}: ")
+        # a file's name in the table says enough, and it is the same wherever the file is
+        folder = "" if path.parent == Path() else f"{path.parent}{os.sep}"
+        why = reason(error).replace(folder, "").removeprefix(f"{path.name}: ")
         return Unreadable(file, _digest({"why": why}), seed, why)
     content = {
         "name": case.name, "unit": case.unit, "vertices": case.outline.vertices.tolist(),
@@ -101,14 +150,14 @@ def read_one(file: str, path: Path, options: SearchOptions) -> Readable | Unread
 def _read(path: Path, options: SearchOptions) -> Case:
     if path.exists() and not path.is_file():
         raise InputError("this is no regular file")
-    if path.suffix.lower() == DRAWINGS:
-        case = load_object(path, width=options.width, unit=options.unit)
+    if is_drawing(path):
+        case = load_object(path, **options.reading.given())
     else:
         case = load_object(path)
     if options.finger_radius is not None:
         case = replace(case, finger_radius=options.finger_radius)
     check_radius(case)
-    return replace(case, sources=(), size_from="")
+    return replace(case, sources=(), size_from="", notes=(), reading=None)
 
 
 def reason(error: Exception) -> str:

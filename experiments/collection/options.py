@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from math import inf
 from typing import Any, Final
 
 from experiments.io.versions import versions
 from icage.errors import InputError
+from icage.formats.drawings.reading import Reading
 from icage.grasps.wanted import HandLimits, Wanted
-from icage.units import Unit
 
 FORMAT: Final = "icage-grasp-table/1"
 
@@ -33,7 +33,7 @@ class SearchOptions:
         The seed of each object's own seed.
     finger_radius:
         [unit] Of the disc fingers; None: what each file says, else 0.
-    width, unit:
+    reading:
         Of drawings, as ``icage.load`` has them; case files have their own.
     seconds:
         [s] For each search; None: it ends by itself, and the table can be made again.
@@ -43,15 +43,21 @@ class SearchOptions:
     top: int = 1
     seed: int = 0
     finger_radius: float | None = None
-    width: float | None = None
-    unit: Unit | None = None
+    reading: Reading = field(default_factory=Reading)
     seconds: float | None = None
 
     def document(self) -> dict[str, Any]:
         """Everything that decides the rows, as JSON reads it."""
         options = asdict(self)
         wanted = options.pop("wanted")
-        options |= {**wanted.pop("limits"), **wanted}
+        options.pop("reading")
+        options |= {
+            "width": None,
+            "unit": None,
+            **self.reading.given(),
+            **wanted.pop("limits"),
+            **wanted,
+        }
         if options["sigma_most"] == inf:
             options["sigma_most"] = None
         mine = {name: one for name, one in versions().items() if name not in _NO_MATTER}

@@ -103,8 +103,7 @@ def searched_rows(
 
 
 def _no_cage(planned: PlannedGrasps) -> str:
-    reasons = "; ".join(f"{count} {why}" for why, count in planned.reasons())
-    return f"none of {planned.compared} grasps compared is a cage ({reasons})"
+    return f"none of {planned.compared} grasps compared is a cage ({planned.reason_words()})"
 
 
 def _grasp(cage: Cage, options: SearchOptions) -> Row:

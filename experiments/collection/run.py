@@ -1,10 +1,12 @@
-"""One call of ``icage grasps FOLDER``: what is missing is searched, then the table is written."""
+"""One call of ``icage grasps`` for many objects: what is missing is searched, then the table is
+written.
+"""
 
 from __future__ import annotations
 
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Final
@@ -40,21 +42,26 @@ def check_table(out: str) -> Path:
     return place
 
 
-def search_folder(
-    folder: Path, out: str, options: SearchOptions, workers: int | None, scheduler: str | None
+def search_objects(
+    given: Sequence[str],
+    out: str,
+    options: SearchOptions,
+    workers: int | None,
+    scheduler: str | None,
 ) -> list[str]:
-    """Search every object of the folder that has no rows yet, and write all; the lines to print.
+    """Search every object of these files and folders that has no rows yet, and write all; the lines
+    to print.
 
     The table is the same whatever was searched before, by how many, and in whatever order.
 
     Raises
     ------
     InputError:
-        The folder holds no objects, the table cannot be written or is of another search, or the
-        cluster is no use.
+        As ``object_files``, the table cannot be written or is of another search, or the cluster is
+        no use.
     """
     place = check_table(out)
-    files = object_files(folder)
+    files = object_files([Path(one) for one in given])
     document = options.document()
     if scheduler is None:
         backend = on_this_machine(options, document, workers or cores())
@@ -72,7 +79,7 @@ def search_folder(
         rows = run.in_order()
         kept.finish(rows)
     _tell([row for row in rows if row["rank"] is None])
-    return _summary(run, rows, folder, out)
+    return _summary(run, rows, given, out)
 
 
 class _Run:
@@ -100,7 +107,7 @@ class _Run:
     def in_order(self) -> list[Row]:
         """All rows: by file, then by rank."""
         if len(self._order) != len(self._files):
-            raise RuntimeError("not every object of the folder was looked at")
+            raise RuntimeError("not every object was looked at")
         return [{"rank": None, **row} for key in self._order for row in self.rows[key]]
 
 
@@ -113,12 +120,13 @@ def _tell(failed: list[Row]) -> None:
         print(f"icage: {line}", file=sys.stderr)
 
 
-def _summary(run: _Run, rows: list[Row], folder: Path, out: str) -> list[str]:
+def _summary(run: _Run, rows: list[Row], given: Sequence[str], out: str) -> list[str]:
     failed = sum(row["rank"] is None for row in rows)
     count = len(run.rows)
     late = sum(row.get("ended") is not None for row in rows if row["rank"] in (None, 1))
+    what = given[0] if len(given) == 1 else f"{len(given)} files and folders"
     lines = [
-        f"{folder}: {count} objects, {count - failed} with a grasp, {failed} without; "
+        f"{what}: {count} objects, {count - failed} with a grasp, {failed} without; "
         f"{run.searched} searched now"
     ]
     if late:

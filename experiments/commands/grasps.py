@@ -1,5 +1,5 @@
 """``icage grasps OUTLINE-OR-CASE``: good target grasps of an object, or all of one hand; or those
-of every object of a folder, as a table.
+of many objects, files and folders, as a table.
 """
 
 from __future__ import annotations
@@ -39,10 +39,11 @@ def add_parser(subparsers: Any) -> None:
     """Options of the command."""
     parser = subparsers.add_parser(
         "grasps",
-        help="the best target grasps of an object, or of every object of a folder",
+        help="the best target grasps of an object, or of many: files and folders",
         description="Search the three-finger immobilizing grasps of an object for those with the "
-        "largest\ncages, or list all immobilizing grasps of one given hand (--phi). Of a folder: "
-        "the best grasps\nof every drawing (*.svg) and case file (*.json) in it, as a table.",
+        "largest\ncages, or list all immobilizing grasps of one given hand (--phi). With --out: "
+        "the best grasps\nof many drawings (*.svg) and case files (*.json), given one by one or by "
+        "their folders, as a table.",
         epilog=PHI_SKETCH,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -50,7 +51,9 @@ def add_parser(subparsers: Any) -> None:
         "object",
         metavar="OUTLINE-OR-CASE",
         type=file_name,
-        help="drawing, case file, or a shipped object's name; or a folder of them, with --out",
+        nargs="+",
+        help="drawing, case file, or a shipped object's name; with --out any number of drawings, "
+        "case files and folders of them, one after another",
     )
     parser.add_argument(
         "--finger-radius",
@@ -69,7 +72,7 @@ def add_parser(subparsers: Any) -> None:
         "phi_1 and phi_2 in degrees, as in the sketch below",
     )
     parser.add_argument(
-        "--top", type=count, metavar="K", help="how many to list (10; of each object of a folder 1)"
+        "--top", type=count, metavar="K", help="how many to list (10; with --out 1 of each object)"
     )
     parser.add_argument(
         "--aim",
@@ -141,7 +144,7 @@ def add_parser(subparsers: Any) -> None:
         "--seconds",
         type=positive,
         metavar="S",
-        help="stop the search (of a folder: each) after S seconds with what there is (Ctrl-C does "
+        help="stop the search (with --out: each) after S seconds with what there is (Ctrl-C does "
         "so too); what it has by then is not the same every time",
     )
     parser.add_argument(
@@ -165,83 +168,110 @@ def add_parser(subparsers: Any) -> None:
         "many objects",
         "The same command goes on after anything, kill -9 too: what is done is kept in a hidden "
         "folder beside FILE. Lengths are in each object's own unit, --width and --unit for its "
-        "drawings only. Each object has a seed of its own, from --seed and its name.",
+        "drawings only. Each object has a seed of its own, from --seed and its name: below its "
+        "folder, or the bare name of a file that is given itself, so two of one name are refused.",
     )
     many.add_argument(
         "--out", metavar="FILE", type=file_name,
-        help="the table of a folder (.parquet): a row a grasp, or one that says why there is none",
+        help="the table (.parquet): a row a grasp, or one that says why there is none",
     )  # fmt: skip
     many.add_argument(
         "--workers", metavar="N", type=count,
-        help="processes for a folder (one per core), threads for one object (2); no "
+        help="processes for a table (one per core), threads for one object (2); no "
         "number changes the result",
     )  # fmt: skip
     many.add_argument(
         "--scheduler", metavar="ADDRESS", type=file_name,
-        help="search the folder on the dask.distributed cluster at tcp://HOST:PORT",
+        help="search for the table on the dask.distributed cluster at tcp://HOST:PORT",
     )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> int:
-    """The best grasps of every object of a folder, or the list of one object."""
-    if _is_folder(args):
-        _of_folder(args)
+    """The best grasps of many objects, or the list of one object."""
+    if _are_many(args):
+        _of_many(args)
     else:
         from experiments.grasps.run import list_grasps
 
+        (args.object,) = args.object
         list_grasps(args)
     return 0
 
 
 _OF_ONE = ("figure", "cases", "json")
-_OF_MANY = ("out", "scheduler")
 
 
-def _is_folder(args: argparse.Namespace) -> bool:
-    """Whether a folder of objects is meant, with the options for one; a shipped name is no folder.
+def _are_many(args: argparse.Namespace) -> bool:
+    """Whether a table is meant, with the options for one: by ``--out``, a folder or several names.
+
+    A shipped name is no folder, and in no table.
 
     Raises
     ------
     InputError:
         An option is for the other.
     """
+    from icage.errors import InputError
+
+    given = args.object
+    if len(given) > 1:
+        what = f"{len(given)} are given"
+    elif _is_folder(given[0]):
+        what = f"{given[0]!r} is a folder"
+    elif args.out is not None or args.scheduler is not None:
+        what = f"{'--out' if args.out is not None else '--scheduler'} is for a table"
+    else:
+        return False
+    _check_not_shipped(given)
+    for name in _OF_ONE:
+        if getattr(args, name) is not None:
+            raise InputError(f"--{name} is for one object; {what}")
+    if args.phi is not None and args.within is None:
+        raise InputError(f"--phi without --within lists the grasps of one object; {what}")
+    if args.out is None:
+        raise InputError(f"{what}: --out FILE.parquet is needed")
+    return True
+
+
+def _is_folder(name: str) -> bool:
+    from pathlib import Path
+
+    from icage.formats.load import is_shipped
+
+    try:
+        return Path(name).is_dir() and not is_shipped(name)
+    except OSError:  # a name that no file can have: the error comes from whoever reads it
+        return False
+
+
+def _check_not_shipped(given: list[str]) -> None:
     from pathlib import Path
 
     from icage.errors import InputError
     from icage.formats.load import is_shipped
 
-    shipped = is_shipped(args.object)
-    try:
-        folder = Path(args.object).is_dir() and not shipped
-    except OSError:  # a name that no file can have: the error comes from whoever reads it
-        folder = False
-    if folder:
-        for name in _OF_ONE:
-            if getattr(args, name) is not None:
-                raise InputError(f"--{name} is for one object; {args.object!r} is a folder")
-        if args.phi is not None and args.within is None:
-            raise InputError("--phi without --within lists the grasps of one object, not a folder")
-        if args.out is None:
-            raise InputError(f"{args.object!r} is a folder: --out FILE.parquet is needed")
-        return True
-    for name in _OF_MANY:
-        if getattr(args, name) is not None:
-            what = f"the shipped object, ./{args.object} a folder" if shipped else "no folder"
-            hint = " (--json FILE writes the grasps of one object)" if name == "out" else ""
-            raise InputError(f"--{name} is for a folder; {args.object!r} is {what}{hint}")
-    return False
+    for name in given:
+        if is_shipped(name):
+            there = (
+                f"./{name} is the one that is here"
+                if Path(name).exists()
+                else "--json FILE is for it alone"
+            )
+            raise InputError(
+                f"{name!r} is the shipped object, and a table is of files and folders; {there}"
+            )
 
 
-def _of_folder(args: argparse.Namespace) -> None:
-    from pathlib import Path
-
+def _of_many(args: argparse.Namespace) -> None:
+    from experiments.cases.reading import reading_of
     from experiments.collection.options import SearchOptions
-    from experiments.collection.run import search_folder
+    from experiments.collection.run import search_objects
     from experiments.grasps.wanted_by_options import wanted_of
 
     options = SearchOptions(
-        wanted_of(args), args.top or 1, args.seed, args.finger_radius, args.width, args.unit,
+        wanted_of(args), args.top or 1, args.seed, args.finger_radius,
+        reading_of(args, tolerance=args.tolerance != 0.0),
         args.seconds,
     )  # fmt: skip
-    lines = search_folder(Path(args.object), args.out, options, args.workers, args.scheduler)
+    lines = search_objects(args.object, args.out, options, args.workers, args.scheduler)
     print("\n".join(lines))

@@ -23,9 +23,9 @@ def tell(planned: PlannedGrasps, args: Namespace) -> None:
     if planned.searches_broken_off:
         lines.append(f"{planned.searches_broken_off} searches were too large and broken off")
     if planned.failures:
-        reasons = "; ".join(f"{count} {why}" for why, count in planned.reasons())
         lines.append(
-            f"candidates that are no grasps of these fingers: {len(planned.failures)} ({reasons})"
+            f"candidates that are no grasps of these fingers: {len(planned.failures)} "
+            f"({planned.reason_words()})"
         )
     for line in lines:
         print(f"icage: {line}", file=sys.stderr)

@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from icage.agreement import disagreements
-from icage.cage import Cage, Puncture
+from icage.cage import Cage, CageStatus, Puncture
 from icage.case import Case
 from icage.contact_space.method import CONTACT_SPACE
 from icage.errors import InputError
@@ -23,6 +23,7 @@ from icage.planner import plan
 from icage.sampling import SamplingError, Starts, StartSet, has_rest, safe_level
 from sim.closing.judge import OUTCOMES, Verdicts
 from sim.closing.outcome import ClosingOutcomes
+from sim.closing.push import compile_steps
 from sim.closing.replay import check_closable, replay_set
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
@@ -119,15 +120,17 @@ def replay(cases: Sequence[Case], trials: int, seed: int, threads: int, report: 
     check_discs(cases)
     runs: list[Run] = []
     skipped: list[str] = []
-    # the paper's method first: on a bare machine it is compiled here, while another process
-    # compiles what comes next
+    # the paper's method and the closing's steps first: on a bare machine they are compiled here,
+    # while another process compiles what comes next
     machine_code_at_once()
     seconds: list[Cage] = []
     for number, case in enumerate(cases):
         report("contact space", number, len(cases))
         seconds.append(plan(case, method=CONTACT_SPACE))
     report("contact space", len(cases), len(cases))
-    machine_code_at_once(wait=True)
+    if seconds[0].status != CageStatus.NOT_A_CAGE:
+        first = cases[0]
+        compile_steps(Scene(first.outline, seconds[0].hand, first.finger_radius, SimConfig()))
     for number, (case, second) in enumerate(zip(cases, seconds, strict=True)):
         report("planning", number, len(cases))
         cage = plan(case)

@@ -1,47 +1,147 @@
 """All minima of sigma for one hand and where they merge, by the cells' method. Our own.
 
 The counterpart of ``icage.contact_space.sublevel``: two ways to one diagram.
+[docs/decisions/0014-whole-sublevels.md]
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple, TypeVar
+
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import AnyArray, FloatArray, IntArray
 from icage.cells.free_space import FreeSpace
-from icage.cells.kernels.columns import LOW_LEVEL, MERGE_LOSE
-from icage.cells.kernels.tree import all_passes, merge
+from icage.cells.kernels.inhabited import extents_of, inhabited_cells
+from icage.cells.kernels.whole import (
+    Ends,
+    LeastPoints,
+    Passes,
+    ends_of_minima,
+    least_hands,
+    least_passes,
+    least_points,
+    passes_between,
+    rows_of,
+)
 from icage.errors import InputError
+from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
+from icage.minima import Sublevels
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT
 
-MOST_PIECES = 80
-"""Pieces of the plane beyond which the table of all passes would take more than a GB."""
+MOST_CELLS = 5_000_000
+"""Cells that hold a hand, beyond which their passes and merges would take more than 1 GB."""
+
+_AT_CAP = 1.0 + 1e-9
+"""[1] Passes up to this part of the cap are taken: at the cap every hand has escaped, and rounding
+must not make a hand that escapes just there one that never does."""
+
+_STRETCH = 10_000
+"""Cells that a thread takes at a time: some 50 ms."""
+
+Done = TypeVar("Done")
 
 
-def births_and_merges(outline: Outline, hand: HandShape) -> FloatArray:
-    """(m, 2) = sigma of every minimum, level at which it merges with a deeper one; by sigma.
+class _Minima(NamedTuple):
+    """The minima that count, by sigma: births, merges and ``into`` (m,), contacts (m, 3, 2)."""
 
-    A pinched hand is the deepest minimum of all. inf: it never merges.
+    births: FloatArray
+    merges: FloatArray
+    into: IntArray
+    contacts: FloatArray
+
+
+def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Sublevels:
+    """The whole sublevel structure of a hand with point fingers. See ``icage.sublevels``.
+
+    Complexity: of all (piece, piece, piece) those are looked at that hold a hand, n^2 to n^2.5.
 
     Raises
     ------
     InputError:
-        The outline needs more than ``MOST_PIECES`` convex pieces around it.
+        More than ``MOST_CELLS`` cells hold a hand.
     """
-    free_space = FreeSpace.around(outline, hand)
-    if free_space.pieces.total > MOST_PIECES:
-        raise InputError(
-            f"the outline needs {free_space.pieces.total} pieces; up to {MOST_PIECES} are "
-            "allowed here"
-        )
-    passes = all_passes(free_space.pieces, free_space.z, free_space.cap, free_space.worst)
-    low = passes.births
-    joined = merge(low, passes.edges, passes.values, np.inf)
-    ended = np.where(np.isfinite(low), np.inf, -np.inf)
-    ended[joined.merges[:, MERGE_LOSE]] = joined.lows[:, LOW_LEVEL]
-    deep = ended - low > DEPTH_CUT * outline.diameter
-    kept = np.flatnonzero(deep & (low > 0.0) & np.isfinite(low))
-    rows = np.column_stack([low[kept], ended[kept]])
-    return rows[np.lexsort((rows[:, 1], rows[:, 0]))]
+    frame = NearFrame.of(outline)
+    free_space = FreeSpace.around(frame.outline_into(outline), hand)
+    found = _minima(free_space, workers)
+    return Sublevels(
+        outline=outline,
+        hand=hand,
+        births=found.births,
+        merges=found.merges,
+        into=found.into,
+        contacts=frame.back(found.contacts),
+    )
+
+
+def _minima(free_space: FreeSpace, workers: int) -> _Minima:
+    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
+    cap = _AT_CAP * free_space.cap
+    with ThreadPoolExecutor(max_workers=workers) as threads:
+        cells = _cells_with_a_hand(free_space, threads)
+        row = rows_of(cells, pieces.total)
+        parts = _shared(
+            threads, len(cells), _STRETCH,
+            lambda a, b: passes_between(pieces, z, cells, row, a, b, cap, worst),
+        )  # fmt: skip
+        passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        least = least_passes(len(cells), passes.lower, passes.upper, passes.sigma)
+        parts = _shared(
+            threads, len(cells), _STRETCH,
+            lambda a, b: least_points(pieces, z, cells, least, a, b, cap, worst),
+        )  # fmt: skip
+        low = LeastPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    order = np.argsort(passes.sigma, kind="stable")
+    ends = ends_of_minima(low.sigma, passes.lower, passes.upper, passes.sigma, order)
+    return _counted(free_space, cells, low, ends)
+
+
+def _shared(
+    threads: ThreadPoolExecutor, total: int, stretch: int, work: Callable[[int, int], Done]
+) -> Iterator[Done]:
+    """What comes of the stretches of a range, in order."""
+    begins = range(0, total, stretch)
+    return threads.map(work, begins, [min(begin + stretch, total) for begin in begins])
+
+
+def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> AnyArray:
+    pieces = free_space.pieces
+    extents = extents_of(pieces, free_space.z)
+    parts: list[AnyArray] = []
+    total = 0
+    for part in _shared(
+        threads, pieces.total, 1, lambda a, b: inhabited_cells(pieces, extents, a, b)
+    ):
+        parts.append(part)
+        total += len(part)
+        if total > MOST_CELLS:
+            threads.shutdown(cancel_futures=True)
+            raise InputError(
+                f"{len(parts)} of the outline's {pieces.total} pieces have {total} cells that hold "
+                f"a hand; up to {MOST_CELLS} in all are allowed here: simplify the outline"
+            )
+    return np.concatenate(parts)
+
+
+def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> _Minima:
+    """Minima deeper than the depth cut, and no pinched hands."""
+    births, merges = low.sigma, ends.merged
+    cut = DEPTH_CUT * free_space.pieces.diameter
+    kept = np.flatnonzero((births > 0.0) & (births < free_space.cap - cut))
+    kept = kept[merges[kept] - births[kept] > cut]
+    kept = kept[np.lexsort((merges[kept], births[kept]))]
+    rows = np.full(len(cells) + 1, -1)  # the last one is for minima that never merge
+    # what swallows a minimum that counts is deeper and ends later, so it counts or is pinched
+    rows[kept] = np.arange(len(kept))
+    hands = least_hands(
+        free_space.pieces, free_space.z, cells[kept], low.finger[kept], low.slot[kept],
+        free_space.cap, free_space.worst,
+    )  # fmt: skip
+    d, w = hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
+    fingers = d[:, None] + w[:, None] * free_space.hand.z
+    contacts = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
+    return _Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts)

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 
 _RESTING = 1e-3
 """[rad] Half the chord on which a contact of an arc rests. Were the contact a corner of the chords,
@@ -27,6 +27,18 @@ angle that the rounding of a distant drawing has opened is split as the right an
 def unit_vectors(angle: FloatArray) -> FloatArray:
     """Unit vectors (k, 2) in these directions (k,), [rad]."""
     return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def even_parts(turn: FloatArray, segments: int) -> IntArray:
+    """Into how many equal parts (k,) arcs (k,) [rad] are split, ``segments`` a quadrant or more.
+
+    Examples
+    --------
+    >>> even_parts(np.radians([0.0, 30.0, 45.0, 46.0]), 2).tolist()
+    [1, 1, 1, 2]
+    """
+    parts = np.ceil(turn / (0.5 * math.pi / segments) - _WHOLE)
+    return np.maximum(1, parts.astype(np.int64))
 
 
 def even_stops(turn: float, segments: int, through: Iterable[float] = ()) -> FloatArray:

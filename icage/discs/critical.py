@@ -143,7 +143,9 @@ class CriticalHands:
         rows = features.as_hand(hands)
         order = np.argsort(np.hypot(rows[:, 2], rows[:, 3]), kind="stable")
         touched = features.touched(features.scaled(hands)[order], reach / self.size)
-        _, first = np.unique(touched, axis=0, return_index=True)
+        # of packed rows as bytes: numpy compares rows of truth values one field after another
+        packed = np.packbits(touched, axis=1)
+        _, first = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_index=True)
         found: list[Critical] = []
         for k in np.sort(first).tolist():
             v = rows[order[k]]
@@ -228,14 +230,15 @@ class CriticalHands:
         self, v: FloatArray, features: list[Feature]
     ) -> tuple[FloatArray, FloatArray] | None:
         """A hand that balances forces, of either sign, and touches all of the features; or None."""
-        gaps = self._features.gaps(v, features)
+        chosen = self._features.chosen(features)
+        gaps = self._features.gaps_of(v, chosen)
         force: FloatArray = np.asarray(
             np.linalg.lstsq(gaps.slope.T, slope_of_half_square(v), rcond=1e-9)[0], np.float64
         )
         m = len(features)
         matrix = np.zeros((4 + m, 4 + m))
         for _ in range(_STEPS):
-            matrix[:4, :4] = self._features.curvature(features, gaps, force)
+            matrix[:4, :4] = self._features.curvature(chosen, gaps, force)
             matrix[:4, 4:] = -gaps.slope.T
             matrix[4:, :4] = gaps.slope
             off = slope_of_half_square(v) - gaps.slope.T @ force
@@ -245,7 +248,7 @@ class CriticalHands:
             if not longest < 0.5:
                 return None
             v, force = np.asarray(v + step[:4]), np.asarray(force + step[4:], np.float64)
-            gaps = self._features.gaps(v, features)
+            gaps = self._features.gaps_of(v, chosen)
             if longest < 1e-14:
                 break
         off = slope_of_half_square(v) - gaps.slope.T @ force
@@ -276,16 +279,17 @@ class CriticalHands:
 
     def _judged(self, v: FloatArray, features: list[Feature], descending: int) -> Critical | None:
         """What the hand is, if its forces balance pushing and it is of the wanted kind."""
-        gaps = self._features.gaps(v, features)
+        chosen = self._features.chosen(features)
+        gaps = self._features.gaps_of(v, chosen)
         force, miss = pushing(gaps.slope.T, slope_of_half_square(v))
         if miss > _BALANCED * np.hypot(v[2], v[3]):
             return None
         loaded = pushes(force)
         along = free_directions(gaps.slope[loaded])
-        hessian = self._features.curvature(features, gaps, force)
+        hessian = self._features.curvature(chosen, gaps, force)
         bend, ways = np.linalg.eigh(along @ hessian @ along.T)
         down, level = int((bend < -FLAT).sum()), int((np.abs(bend) <= FLAT).sum())
-        arcs = any(f.is_arc for f, p in zip(features, loaded, strict=True) if p)
+        arcs = bool(chosen.is_arc[loaded].any())
         if down != descending and not (level and not arcs and down <= descending):
             return None
         # a puncture goes on to both sides, down or, between parallel edges, on the level first

@@ -49,12 +49,13 @@ def way_down(features: Features, v: FloatArray) -> FloatArray | None:
     near = features.near(v, 1e-6)
     if len({f.finger for f in near}) < 2:
         return None
-    gaps = features.gaps(v, near)
+    chosen = features.chosen(near)
+    gaps = features.gaps_of(v, chosen)
     force, _ = pushing(gaps.slope.T, slope_of_half_square(v))
     along = free_directions(gaps.slope[pushes(force)])
     if not len(along):
         return None
-    bend, ways = np.linalg.eigh(along @ features.curvature(near, gaps, force) @ along.T)
+    bend, ways = np.linalg.eigh(along @ features.curvature(chosen, gaps, force) @ along.T)
     if bend[0] >= -FLAT:
         return None
     way = ways[:, 0] @ along

@@ -8,7 +8,6 @@ curve are concave, so gaps are smooth and free space near a hand is where none i
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +20,9 @@ from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
 
+_OF_HALF_SQUARE = np.diag([0.0, 0.0, 1.0, 1.0])
+"""Second derivative of w . w / 2."""
+
 
 class Feature(NamedTuple):
     """Finger ``finger`` (0..) at an edge or at a vertex of the outline, by number."""
@@ -28,6 +30,17 @@ class Feature(NamedTuple):
     finger: int
     number: int
     is_arc: bool
+
+
+class Chosen(NamedTuple):
+    """Some features as arrays: of m of them the maps (m, 2, 4) of their fingers, a point (m, 2)
+    that each goes through, normals (m, 2) of the edges, and which are arcs, (m,).
+    """
+
+    maps: FloatArray
+    point: FloatArray
+    out: FloatArray
+    is_arc: BoolArray
 
 
 class Gaps(NamedTuple):
@@ -91,14 +104,14 @@ class Features:
         the edges, then the vertices.
         """
         edges = self._edges
-        off = at[:, :, None] - edges.start
-        along = (off * edges.way).sum(axis=3)
+        x, y = at[..., 0, None] - edges.start[:, 0], at[..., 1, None] - edges.start[:, 1]
+        along = x * edges.way[:, 0] + y * edges.way[:, 1]
         past_end = along - edges.length
-        gap = (off * edges.out).sum(axis=3) - self.radius
+        gap = x * edges.out[:, 0] + y * edges.out[:, 1] - self.radius
         edge = (np.abs(gap) <= reach) & (along >= -beyond) & (past_end <= beyond)
-        far = np.hypot(off[..., 0], off[..., 1])
-        arc = (np.abs(far - self.radius) <= reach) & edges.convex
-        arc &= (along <= beyond) & (np.roll(past_end, 1, axis=2) >= -beyond)
+        arc = (np.abs(np.hypot(x, y) - self.radius) <= reach) & edges.convex & (along <= beyond)
+        arc[..., 1:] &= past_end[..., :-1] >= -beyond
+        arc[..., 0] &= past_end[..., -1] >= -beyond
         return np.concatenate([edge, arc], axis=2).reshape(len(at), -1)
 
     def named(self, touched: BoolArray) -> list[Feature]:
@@ -155,26 +168,40 @@ class Features:
 
     # ------------------------------------------------------------------ gaps
 
+    def chosen(self, features: list[Feature]) -> Chosen:
+        """Features as arrays, for several hands."""
+        number = [f.number for f in features]
+        return Chosen(
+            self._maps[[f.finger for f in features]],
+            self._ring[number],
+            self._edges.out[number],
+            np.array([f.is_arc for f in features], dtype=bool),
+        )
+
     def gaps(self, v: FloatArray, features: list[Feature]) -> Gaps:
         """The gaps that features leave a hand."""
-        maps = self._maps[[f.finger for f in features]]
-        number = [f.number for f in features]
-        off = maps @ v - self._ring[number]
-        normals = self._edges.out[number]
-        for k, f in enumerate(features):
-            if f.is_arc:
-                normals[k] = off[k] / math.hypot(off[k, 0], off[k, 1])
-        value = (normals * off).sum(axis=1) - self.radius
-        return Gaps(value, normals, np.einsum("ki,kij->kj", normals, maps))
+        return self.gaps_of(v, self.chosen(features))
 
-    def curvature(self, features: list[Feature], gaps: Gaps, force: FloatArray) -> FloatArray:
+    def gaps_of(self, v: FloatArray, chosen: Chosen) -> Gaps:
+        """The same for features that were chosen before."""
+        off = chosen.maps @ v - chosen.point
+        x, y = off.T
+        far = np.hypot(x, y)
+        normals = np.where(
+            chosen.is_arc[:, None], off / np.maximum(far, 1e-300)[:, None], chosen.out
+        )
+        value = normals[:, 0] * x + normals[:, 1] * y - self.radius
+        return Gaps(value, normals, (normals[:, None] @ chosen.maps)[:, 0])
+
+    def curvature(self, chosen: Chosen, gaps: Gaps, force: FloatArray) -> FloatArray:
         """Second derivative (4, 4) of w . w / 2 - sum of force times gap."""
-        hessian = np.diag([0.0, 0.0, 1.0, 1.0])
-        for k, f in enumerate(features):
-            if f.is_arc:
-                nx, ny = gaps.normal[k]
-                across = np.array([-ny, nx]) @ self._maps[f.finger]
-                hessian -= force[k] / (self.radius + gaps.value[k]) * np.outer(across, across)
+        hessian = _OF_HALF_SQUARE.copy()
+        if chosen.is_arc.any():
+            normal = gaps.normal[chosen.is_arc]
+            across = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+            rows = (across[:, None] @ chosen.maps[chosen.is_arc])[:, 0]
+            bend = (force / (self.radius + gaps.value))[chosen.is_arc]
+            hessian -= (rows.T * bend) @ rows
         return hessian
 
     def half_planes(self, v: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:

@@ -35,6 +35,10 @@ SEGMENTS = (8, 24, 64)
 """Segments a quadrant of the coarse polygons, and of those that are tried where a level stays
 unsolved, the two polygons disagree or the bracket is wide."""
 
+_COARSE = 4
+"""Segments a quadrant of the outer polygon that only bounds a level, tried first. For one that
+names features 4 are too few: of 600 targets two then had a wrong sigma_first or one grasp twice."""
+
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
 
@@ -97,6 +101,8 @@ class _Solved(NamedTuple):
     levels: TrueLevels
     through: FloatArray
     """(k, 2) contacts on arcs that the polygon was drawn through."""
+    sagitta: float
+    """[unit] How far the polygon lies off the curve at most."""
     again: bool = False
 
 
@@ -116,7 +122,7 @@ class _Polygons:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
             through = self.curve.on_arcs(self.true)
-        local_cage = self._local_cage(self._outer_polygon(through))
+        local_cage = self._local_cage(self._outer_polygon(self.segments, through), self.segments)
         if local_cage is None:
             return None
         cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
@@ -136,7 +142,7 @@ class _Polygons:
         last: TrueLevels | None = None
         for _ in range(_ROUNDS):
             polygon = self.curve.inner(self.segments, through)
-            local_cage = self._local_cage(polygon)
+            local_cage = self._local_cage(polygon, self.segments)
             if local_cage is None:
                 if self.target is not None:
                     return None
@@ -177,7 +183,11 @@ class _Polygons:
         if len(inner.through) > len(coarse.through) and not _near(
             outer.sigma_max, levels.sigma_max, _TIGHT
         ):
-            outer = self._local_cage(self._outer_polygon(inner.through))
+            for segments in (_COARSE, self.segments):
+                polygon = self._outer_polygon(segments, inner.through)
+                outer = self._local_cage(polygon, segments)
+                if outer is not None and _near(outer.sigma_max, levels.sigma_max, _TIGHT):
+                    break
         if outer is None:
             return None
         low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
@@ -207,7 +217,7 @@ class _Polygons:
                 work,
                 minimum_node=tuple(work.minimum_node[k] for k in levels.origin),
                 polygon_first=np.inf if levels.polygon_first is None else levels.polygon_first,
-                sagitta=self.curve.sagitta(self.segments),
+                sagitta=inner.sagitta,
             )
         return replace(
             cage,
@@ -228,23 +238,24 @@ class _Polygons:
             work=work,
         )
 
-    def _local_cage(self, polygon: Outline) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline, segments: int) -> LocalCage | None:
         arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
         hand = self.critical.hand
-        return local_cage_on(polygon, hand, self.true, self.segments, arc, self.method)
+        return local_cage_on(polygon, hand, self.true, segments, arc, self.method)
 
-    def _outer_polygon(self, through: FloatArray) -> Outline:
+    def _outer_polygon(self, segments: int, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
         curve = self.curve
         try:
-            return curve.outer(self.segments, through)
+            return curve.outer(segments, through)
         except GeometryError:
             arcs = directions_on_arcs(curve.outline, curve.radius, through)
-            return offsets(curve.outline, curve.radius, self.segments, arcs).outer
+            return offsets(curve.outline, curve.radius, segments, arcs).outer
 
     def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> _Solved:
-        levels = true_levels(self.critical, cage, self.curve.sagitta(self.segments), self.target)
-        return _Solved(local_cage, cage, levels, through)
+        sagitta = self.curve.sagitta(self.segments)
+        levels = true_levels(self.critical, cage, sagitta, self.target)
+        return _Solved(local_cage, cage, levels, through, sagitta)
 
     def _new_on_arcs(
         self, found: _Solved, through: FloatArray, *, hidden: bool = False
@@ -257,7 +268,7 @@ class _Polygons:
         levels = found.levels
         ends = [*levels.punctures[:1], *levels.punctures[1:][-1:]]
         wanted = [self.true, *(p.contacts for p in ends)]
-        reach = REACH * self.curve.sagitta(self.segments)
+        reach = REACH * found.sagitta
         near = SAME * self.critical.size
         for one in hidden_minima(self.critical, found.cage, reach) if hidden else []:
             if all(np.abs(one.contacts - g.contacts).max() > near for g in levels.grasps):

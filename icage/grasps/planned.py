@@ -56,6 +56,10 @@ class PlannedGrasps:
         """Reasons of the failures with their numbers, the commonest first."""
         return Counter(failure.why for failure in self.failures).most_common()
 
+    def reason_words(self) -> str:
+        """The reasons in one line: "2 no cage; 1 too large", the commonest first."""
+        return "; ".join(f"{count} {why}" for why, count in self.reasons())
+
 
 def score(cage: Cage, aim: Aim) -> float:
     """Ratio that ranks; levels that do not exist count as the largest sigma of the component."""

@@ -108,12 +108,6 @@ def at_work() -> bool:
     return _seen.at_work
 
 
-def wait_for(name: str) -> None:
-    """Until a kernel is ready, or nobody is at work on it any more."""
-    while not is_ready(name) and at_work():
-        sleep(_LOOK)
-
-
 def _allowed() -> bool:
     return (
         fcntl is not None
@@ -239,3 +233,9 @@ def _file_name() -> str:
 
 def _lock_file(folder: Path) -> Path:
     return folder / _file_name().replace(".json", ".lock")
+
+
+def claims_file() -> Path | None:
+    """Where who compiles what is written down, if there is a cache at all."""
+    folder = _folder()
+    return None if folder is None else folder / _file_name().replace(".json", ".claims")

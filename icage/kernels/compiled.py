@@ -4,9 +4,9 @@ A kernel is plain Python and gives the same digits either way, so the first answ
 compiler: a small plan is done in less time than numba takes to be imported. A process interprets
 its kernels for ``PATIENCE`` seconds. After that, or at once for large arguments, it goes over to
 machine code that is on disk, or comes there while another process is at work on it
-(``background``). After ``COMPILE_PATIENCE`` it waits for that, or compiles what nobody else does. A
-call that takes too long is given up in the midst and made again: kernels write nothing but what
-they return (and tables that remain true).
+(``background``). After ``COMPILE_PATIENCE`` it compiles itself what no other process has in hand
+(``claims``). A call that takes too long is given up in the midst and made again: kernels write
+nothing but what they return (and tables that remain true).
 ``NUMBA_DISABLE_JIT=1`` never compiles. [docs/decisions/0009-cold-start.md]
 """
 
@@ -20,7 +20,7 @@ from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 
-from icage.kernels import background
+from icage.kernels import background, claims
 from icage.kernels.compiling import announce
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -30,8 +30,8 @@ PATIENCE: Final = 0.3
 takes to load numba."""
 
 COMPILE_PATIENCE: Final = 10.0
-"""[s] ... before it waits for what is being compiled, or compiles what nobody else does: half as
-long as that takes, for a plan."""
+"""[s] ... before it compiles what is not there, or waits for who does: half as long as that takes,
+for a plan."""
 
 LARGE: Final = 1500
 """Numbers in the arguments of a call for which machine code that is there is taken at once: a plan
@@ -67,7 +67,8 @@ class _Process:
     spent: float = 0.0
     """[s] Interpreting so far."""
     at_once: bool = False
-    wait: bool = False
+    patient: bool = True
+    """Whether it waits for a kernel that another process is compiling."""
     never: bool = background.PLAIN
 
 
@@ -80,9 +81,10 @@ _kernels: list[Kernel] = []
 class Kernel:
     """A function on arrays that runs as plain Python or as machine code."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], *, borrows: bool = False) -> None:
         update_wrapper(self, function)
         self.plain = function
+        self.borrows = borrows
         self.name = f"{function.__module__}.{function.__qualname__}"
         self.machine: Callable[..., Any] | None = None
         """Machine code, once this process has gone over."""
@@ -107,7 +109,7 @@ class Kernel:
         """The function as numba has it, to be called from Python."""
         from icage.kernels.machine import dispatcher_of  # only now: loads numba
 
-        return dispatcher_of(self.plain)
+        return dispatcher_of(self.plain, self.borrows)
 
     @cached_property
     def _numba_type_(self) -> Any:
@@ -116,7 +118,7 @@ class Kernel:
 
         if "dispatcher" in self.__dict__:  # met before: not compiled twice
             return self.dispatcher._numba_type_
-        return inner_dispatcher_of(self.plain)._numba_type_
+        return inner_dispatcher_of(self.plain, self.borrows)._numba_type_
 
 
 def compiled(function: Function) -> Function:
@@ -126,17 +128,29 @@ def compiled(function: Function) -> Function:
     return cast(Function, kernel)
 
 
+def compiled_borrowing(function: Function) -> Function:
+    """The same for a kernel that makes no array and returns none: it borrows those it is given.
+
+    Machine code otherwise counts who uses an array, at every call, in steps that no two threads can
+    take at once: a third of the time of a search, and two threads on one object were in each
+    other's way.
+    """
+    kernel = Kernel(function, borrows=True)
+    _kernels.append(kernel)
+    return cast(Function, kernel)
+
+
 def with_machine_code() -> list[str]:
     """Names of the kernels that have gone over in this process."""
     return [kernel.name for kernel in _kernels if kernel.machine is not None]
 
 
-def machine_code_at_once(*, wait: bool = False) -> None:
+def machine_code_at_once(*, patient: bool = True) -> None:
     """From now on no kernel is interpreted: for what measures, or is known to be long.
 
-    ``wait`` for what another process is compiling; otherwise everything is compiled here.
+    A kernel that another process is compiling is waited for, or ``claims.Busy`` is raised.
     """
-    _process.at_once, _process.wait = True, wait
+    _process.at_once, _process.patient = True, patient
 
 
 def long_job() -> None:
@@ -145,7 +159,7 @@ def long_job() -> None:
     For commands that call their kernels often, in other processes too.
     """
     background.start(awaited=True)
-    machine_code_at_once(wait=True)
+    machine_code_at_once()
 
 
 def _from_outside(kernel: Kernel, args: tuple[Any, ...]) -> Any:
@@ -154,19 +168,14 @@ def _from_outside(kernel: Kernel, args: tuple[Any, ...]) -> Any:
             return _interpreted(kernel, args, np.inf)
     left = PATIENCE - _process.spent
     if _process.at_once:
-        if _process.wait:
-            _await(kernel.name)
         return _by_machine(kernel, args)
     background.start()
     if left <= 0.0:
         if _goes_over(kernel.name, _process.spent):
             return _by_machine(kernel, args)
         left = _NEXT_LOOK
-    elif (size := _size(args)) > LARGE:
-        if size > HUGE:
-            _await(kernel.name)
-        if size > HUGE or background.is_ready(kernel.name):
-            return _by_machine(kernel, args)
+    elif (size := _size(args)) > LARGE and (size > HUGE or background.is_ready(kernel.name)):
+        return _by_machine(kernel, args)
     try:
         # where Python's numbers and machine code part (a division by zero), machine code decides
         with np.errstate(over="ignore", under="ignore", divide="raise", invalid="raise"):
@@ -202,24 +211,14 @@ def _goes_over(name: str, spent: float) -> bool:
         return True
     if background.at_work():
         announce()
-    if spent <= COMPILE_PATIENCE:
-        return False
-    _await(name)
-    return True
-
-
-def _await(name: str) -> None:
-    """Until another process has compiled a kernel, or has ended."""
-    background.start()
-    if not background.is_ready(name) and background.at_work():
-        announce()
-        background.wait_for(name)
+    return spent > COMPILE_PATIENCE
 
 
 def _by_machine(kernel: Kernel, args: tuple[Any, ...]) -> Any:
     """Go over, for this call and all that follow."""
-    machine = cast("Callable[..., Any]", kernel.dispatcher)
-    answer = machine(*args)
+    with claims.alone_with(kernel.name, patient=_process.patient):
+        machine = cast("Callable[..., Any]", kernel.dispatcher)
+        answer = machine(*args)
     kernel.machine = machine
     background.add(kernel.name)
     return answer

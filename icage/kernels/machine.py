@@ -10,13 +10,14 @@ the versions of numba and llvmlite are part of its files' names, as Python's is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from importlib import import_module
 from typing import Any, Final
 
 import llvmlite
 import numba
-import numba.np.linalg as numba_linalg
 from numba.core.event import Event, Listener, register
+from numba.core.runtime.nrt import rtsys
 
 from icage.kernels.compiling import announce
 from icage.kernels.digest import kernel_digest
@@ -31,7 +32,7 @@ _dispatchers: list[Any] = []
 """All kernels of this process that have met numba."""
 
 
-def dispatcher_of(function: Callable[..., Any]) -> Any:
+def dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function, to be compiled without fast-math and cached on disk.
 
     Kernels touch no Python object, so they release its lock and threads share the cores.
@@ -39,19 +40,23 @@ def dispatcher_of(function: Callable[..., Any]) -> Any:
     Where numba may write a cache neither beside the file nor into the user's own folder, every
     process compiles for itself.
     """
-    return _dispatcher(function, TOOLS)
+    return _dispatcher(function, TOOLS, borrows)
 
 
-def inner_dispatcher_of(function: Callable[..., Any]) -> Any:
+def inner_dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function as other kernels call it."""
-    return _dispatcher(function, f"inner.{TOOLS}", **_INNER)
+    return _dispatcher(function, f"inner.{TOOLS}", borrows, **_INNER)
 
 
-def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> Any:
+def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **options: Any) -> Any:
+    # what counts no references cannot make an array; said of every kernel, for one that does not
+    # say is compiled as its first caller is
+    options |= {"fastmath": False, "nogil": True, "_nrt": not borrows}
     try:
-        dispatcher: Any = numba.njit(cache=True, fastmath=False, nogil=True, **options)(function)
+        dispatcher: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
-        dispatcher = numba.njit(fastmath=False, nogil=True, **options)(function)
+        _load_without_blas()
+        dispatcher = numba.njit(**options)(function)
         _dispatchers.append(dispatcher)
         return dispatcher
     # private names of numba's, checked by a test: without them the cache would go stale unseen
@@ -61,6 +66,7 @@ def _dispatcher(function: Callable[..., Any], suffix: str, **options: Any) -> An
         filename_base=f"{cache._impl.filename_base}.{suffix}",
         source_stamp=kernel_digest(),
     )
+    cache.load_overload = _without_what_compiles(cache)
     _dispatchers.append(dispatcher)
     return dispatcher
 
@@ -77,12 +83,33 @@ class _Watch(Listener):
         pass
 
 
+def _without_what_compiles(cache: Any) -> Callable[[Any, Any], Any]:
+    """How a cache finds machine code: by what runs it, without what compiles.
+
+    numba first loads all that it could compile, hundreds of functions, which takes as long as the
+    rest of it. That follows here only where nothing is found; what compiles asks for it again.
+    """
+
+    def load(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)
+        with cache._guard_against_spurious_io_errors():
+            found = cache._load_overload(signature, target)
+            if found is not None:
+                return found
+        _load_without_blas()
+        return None
+
+    return load
+
+
+@lru_cache(maxsize=1)
 def _load_without_blas() -> None:
     """Load what numba has for arrays, but not scipy.
 
     numba asks there whether scipy's BLAS is at hand, which takes as long as a plan. No kernel uses
     it, and scipy is among our requirements: for others the answer is yes, too.
     """
+    numba_linalg: Any = import_module("numba.np.linalg")
     asks = numba_linalg.ensure_blas
     numba_linalg.ensure_blas = lambda: None
     try:
@@ -91,5 +118,4 @@ def _load_without_blas() -> None:
         numba_linalg.ensure_blas = asks
 
 
-_load_without_blas()
 register("numba:compile", _Watch())

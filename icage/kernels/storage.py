@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 
 _MIX = np.uint64(0x9E3779B97F4A7C15)
 
 
-@compiled
+@compiled_borrowing
 def hash_slot(keys, key):
     """Index of ``key`` in the open-addressing table, or of the free place where it belongs."""
     mask = len(keys) - 1
@@ -35,22 +35,30 @@ def rehashed(keys, values):
 
 
 @compiled
-def grown_floats(array):
-    """A copy with twice the rows."""
-    bigger = np.empty((2 * array.shape[0], array.shape[1]), np.float64)
-    bigger[: array.shape[0]] = array
-    return bigger
+def longer(array):
+    """A copy with room for twice as many rows."""
+    rows, columns = array.shape
+    larger = np.empty((2 * rows, columns), array.dtype)
+    for a in range(rows):
+        for b in range(columns):
+            larger[a, b] = array[a, b]
+    return larger
 
 
 @compiled
-def grown_ints(array):
-    """A copy with twice the rows."""
-    bigger = np.empty((2 * array.shape[0], array.shape[1]), np.int64)
-    bigger[: array.shape[0]] = array
-    return bigger
+def put_first(out, values, count):
+    """``out[:count] = values[:count]``; a slice takes a second to compile, for its errors."""
+    for a in range(count):
+        out[a] = values[a]
 
 
 @compiled
+def stable_order(values):
+    """Indices (n,) that sort numbers; equal ones stay as they are."""
+    return np.argsort(values, kind="mergesort")
+
+
+@compiled_borrowing
 def heap_push(value, item, size, v, t):
     """Push (v, t) on a heap ordered by value, then by item (insertion order breaks ties)."""
     at = size
@@ -65,7 +73,7 @@ def heap_push(value, item, size, v, t):
     item[at] = t
 
 
-@compiled
+@compiled_borrowing
 def heap_pop(value, item, size):
     """Remove the least of ``size`` entries (read it at index 0 first)."""
     last = size - 1

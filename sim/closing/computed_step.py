@@ -99,6 +99,14 @@ def empty_room() -> Room:
 
 
 @njit(cache=True)
+def _copy(rows: FloatArray, out: FloatArray) -> None:  # pragma: no cover - compiled
+    """``out[:] = rows`` (3, 6), which would take two seconds to compile, for what it may raise."""
+    for a in range(rows.shape[0]):
+        for b in range(rows.shape[1]):
+            out[a, b] = rows[a, b]
+
+
+@njit(cache=True)
 def go_on(
     ids: IntArray,
     plant: Plant,
@@ -117,13 +125,13 @@ def go_on(
     ahead = np.empty((3, 6))
     for n in range(len(ids)):
         i = ids[n]
-        ahead[:] = state[i]
+        _copy(state[i], ahead)
         for _ in range(stride):
             if not _step(plant, room, most, ahead):
                 went[n] = False
                 break
         if went[n]:
-            state[i] = ahead
+            _copy(ahead, state[i])
             peak[i] = max(peak[i], max(room.total[0], room.total[1], room.total[2]))
     return went
 

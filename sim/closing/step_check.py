@@ -7,7 +7,7 @@ engine's contacts: a contact the engine missed would not be missed here.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,6 +33,9 @@ class EndingCode(IntEnum):
 
 
 RUNNING, SETTLED, PINCHED, TIMED_OUT, DIVERGED = EndingCode
+
+_RUNNING = int(RUNNING)
+"""Numpy looks for six special methods of an enum at every comparison, and of a number for none."""
 
 ENDINGS = tuple(code.name.lower() for code in EndingCode)
 """The words for the codes, in their order: those of files and reports."""
@@ -196,6 +199,30 @@ class StepCheck:
     _tail: FloatArray
     _still: IntArray
     _seen: FloatArray
+    _told: tuple[_Shape, _Bounds, _Record] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # what the compiled loop reads and updates is the same at every look: gathered once
+        scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
+        shape = _Shape(
+            scene.object.vertices,
+            scene.finger_radius / scene.object.diameter,
+            kinematics.directions,
+            kinematics.lengths,
+            kinematics.tendon_coefficients,
+        )
+        bounds = _Bounds(
+            config.pinched_size / kinematics.longest_side,
+            config.still_speed,
+            config.still_steps,
+            self.stride,
+            config.time_step,
+        )
+        record = _Record(
+            self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,
+            self.ending,
+        )  # fmt: skip
+        object.__setattr__(self, "_told", (shape, bounds, record))
 
     @classmethod
     def over(
@@ -231,27 +258,8 @@ class StepCheck:
 
     def observe(self, ids: IntArray, qpos: FloatArray, qvel: FloatArray) -> None:
         """Look at the closings ``ids`` after ``stride`` more steps; qpos and qvel are (N, 6)."""
-        scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
         observe: Callable[..., None] = _observe
-        shape = _Shape(
-            scene.object.vertices,
-            scene.finger_radius / scene.object.diameter,
-            kinematics.directions,
-            kinematics.lengths,
-            kinematics.tendon_coefficients,
-        )
-        bounds = _Bounds(
-            config.pinched_size / kinematics.longest_side,
-            config.still_speed,
-            config.still_steps,
-            self.stride,
-            config.time_step,
-        )
-        record = _Record(
-            self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,
-            self.ending,
-        )  # fmt: skip
-        observe(ids, qpos, qvel, shape, bounds, record)
+        observe(ids, qpos, qvel, *self._told)
 
     def diverged(self, ids: IntArray) -> None:
         """Note that the engine gave up on, or warned about, these closings."""
@@ -260,7 +268,7 @@ class StepCheck:
     @property
     def running(self) -> IntArray:
         """Ids of the closings that have not ended."""
-        return np.flatnonzero(self.ending == RUNNING)
+        return np.flatnonzero(self.ending == _RUNNING)
 
     @property
     def touches(self) -> FloatArray:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
+from numba import njit
 
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import BoolArray, FloatArray, IntArray
 from sim.closing.approach import approached
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.push import push
@@ -145,16 +146,38 @@ def _layout(model: MjModel) -> tuple[int, ...]:
     return tuple(int(getattr(model, name)) for name in names)
 
 
+@njit(cache=True)
+def _pressed(
+    ids: IntArray, force: FloatArray, warning: IntArray, peak: FloatArray
+) -> BoolArray:  # pragma: no cover - compiled
+    """Raise ``peak`` (N,) of trials ``ids`` to the largest of their ``force`` (N, 3).
+
+    Which of them the engine has warned of, by its counters ``warning`` (N, kinds, 2). A force that
+    is no number is kept.
+    """
+    warned = np.zeros(len(ids), dtype=np.bool_)
+    for n in range(len(ids)):
+        i = ids[n]
+        most = peak[i]
+        for k in range(force.shape[1]):
+            if force[i, k] > most or np.isnan(force[i, k]):
+                most = force[i, k]
+        peak[i] = most
+        for kind in range(warning.shape[1]):
+            if warning[i, kind, 1] != 0:
+                warned[n] = True
+    return warned
+
+
 def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> VariedOutcomes:
     batch, parts, peak = _opened(lot, starts, worlds, threads)
     positions, velocities = batch.bind("qpos"), batch.bind("qvel")
     force, warning = batch.bind("sensordata"), batch.warning
     batch.bind("ncon")  # read at the end: a field bound after the last step would be 0
-    total = sum(len(rows) for _, rows in lot)
     held_up = (worlds.friction > 0.0) | (worlds.table_friction > 0.0)
     rough = np.concatenate([held_up[rows] for _, rows in lot])
     pace = np.concatenate([worlds.speed[rows] for _, rows in lot])
-    rest = _Rest(total, DRIFT * np.minimum(pace, 1.0))
+    rest = _Rest(len(rough), DRIFT * np.minimum(pace, 1.0)) if rough.any() else None
     running = np.flatnonzero(np.concatenate([part.check.ending for part in parts]) == RUNNING)
     while len(running):
         lost: Any = ()
@@ -162,22 +185,24 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
             batch.step(running.astype(np.int32), nstep=LOOK_EVERY)
         except mj.batch.SimulationError as error:
             lost = np.asarray(error.ids)
-        peak[running] = np.maximum(peak[running], force[running].max(axis=1))
-        rest.look(running[rough[running]], positions, velocities)
-        warned = warning[running, :, 1].any(axis=1)
-        bad = np.union1d(running[warned], lost).astype(np.int64)
-        first, left = 0, []
+        bad = running[_pressed(running, force, warning, peak)]
+        if len(lost):
+            bad = np.union1d(bad, lost).astype(np.int64)
+        if rest is not None:
+            rest.look(running[rough[running]], positions, velocities)
+        left: list[IntArray] = []
+        first = 0
         for part in parts:
             last = first + len(part.rows)
             left.append(_look(part, first, last, positions, velocities, rest, bad))
             first = last
-        running = np.concatenate(left)
+        running = np.concatenate(left) if len(left) > 1 else left[0]
     return _read_off(parts, starts, batch, peak)
 
 
 def _look(
     part: _Part, first: int, last: int, positions: FloatArray, velocities: FloatArray,
-    rest: _Rest, bad: IntArray,
+    rest: _Rest | None, bad: IntArray,
 ) -> IntArray:  # fmt: skip
     """Observe the trials of one scene, at first..last of the batch; those still running."""
     check = part.check
@@ -185,8 +210,9 @@ def _look(
     if not len(running):
         return running
     check.observe(running, positions[first:last], velocities[first:last])
-    still = rest.found[first:last] & (check.ending == RUNNING) & (check.touches >= 1)
-    check.ending[still] = SETTLED
+    if rest is not None:
+        still = rest.found[first:last] & (check.ending == RUNNING) & (check.touches >= 1)
+        check.ending[still] = SETTLED
     if len(bad):
         check.diverged(bad[(bad >= first) & (bad < last)] - first)
     return check.running + first

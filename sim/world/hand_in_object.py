@@ -17,6 +17,10 @@ _NO_SIDE = 1e-12
 """[diameter] A side shorter than this (of a shut hand) has no direction."""
 
 
+_FARTHER = 1.0 + 1e-9
+"""[1] Of a square of a distance: farther for certain, whatever the rounding."""
+
+
 @njit(cache=True)
 def turn_back(
     points: FloatArray, x: float, y: float, turn: float
@@ -70,7 +74,9 @@ def depths(
                 distance = bx * bx + by * by
             else:
                 cross = ax * ey - ay * ex
-                distance = cross * cross / square
+                distance = cross * cross
+                # most edges are farther than one met before: that needs no division
+                distance = math.inf if distance > _FARTHER * nearest * square else distance / square
             nearest = min(nearest, distance)
             if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
                 inside = not inside

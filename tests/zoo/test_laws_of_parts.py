@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from icage.cells.sublevels import births_and_merges
 from icage.discs.offsets import arcs, directions_on_arcs, offsets
-from icage.errors import InputError
 from icage.geometry.exterior import exterior_pieces, without_straight_vertices
 from icage.geometry.statics import balance, contact_normals, free_fingers
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
@@ -18,6 +16,7 @@ from icage.grasps.kernels.hands import HandLimits
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.search import best_grasps
 from icage.grasps.wanted import ANY_HAND, Wanted
+from icage.hand_sublevels import sublevels
 from icage.planner import plan
 from icage.tolerance import MERGE_VERTEX
 from tests.zoo.shapes import VALID
@@ -48,13 +47,19 @@ def _grasps_of_hand(one: Specimen) -> None:
 
 
 def _sublevels_of_hand(one: Specimen) -> None:
-    try:
-        rows = births_and_merges(one.outline, one.cage.hand)
-    except InputError:
-        assert len(one.ring) > 20
-        return
-    assert (rows[:, 1] > rows[:, 0]).all()
-    assert np.abs(rows[:, 0] - one.cage.sigma_0).min() <= 1e-9 * one.size
+    """Target and grasps of a cage are among all minima; the target escapes where the cage does."""
+    cage = one.cage
+    found = sublevels(one.outline, cage.hand)
+    assert (found.merges > found.births).all()
+    gaps = found.contacts[:, 1] - found.contacts[:, 0]
+    assert np.abs(np.hypot(*gaps.T) - found.births).max() <= 1e-9 * one.size
+    # symmetric objects have several minima of one level
+    target = np.abs(found.births - cage.sigma_0) <= 1e-9 * one.size
+    escape = np.inf if cage.sigma_max is None else cage.sigma_max
+    apart = np.abs(found.escapes[target] - escape) if np.isfinite(escape) else 0.0
+    assert (found.escapes[target] == escape).any() or np.min(apart) <= 1e-9 * one.size
+    for grasp in cage.grasps:
+        assert np.abs(found.births - grasp.sigma).min() <= 1e-9 * one.size
 
 
 def _features(one: Specimen) -> None:
@@ -123,7 +128,7 @@ def _offsets(one: Specimen) -> None:
 LAWS: dict[str, Callable[[Specimen], None]] = {
     "best_grasps": _grasp_search,
     "grasps_of_hand": _grasps_of_hand,
-    "births_and_merges": _sublevels_of_hand,
+    "sublevels": _sublevels_of_hand,
     "contact features": _features,
     "balance of forces": _statics,
     "exterior_pieces": _exterior_pieces,

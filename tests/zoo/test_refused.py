@@ -12,7 +12,6 @@ import pytest
 from icage.cells.membership import query
 from icage.cells.method import CELLS
 from icage.cells.regions import caging_regions, outer_bounds
-from icage.cells.sublevels import births_and_merges
 from icage.contact_space.method import ContactSpace
 from icage.discs.offsets import offsets
 from icage.errors import IcageError, InputError, OutlineError
@@ -22,6 +21,7 @@ from icage.grasps.features import features_of
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.search import best_grasps
 from icage.hand import HandShape
+from icage.hand_sublevels import sublevels
 from icage.method import Method
 from icage.outline import Outline
 from icage.planner import plan
@@ -40,9 +40,7 @@ DOORS: dict[str, tuple[Callable[[Any], object], type[Exception]]] = {
         lambda v: best_grasps(Outline(v), rng=np.random.default_rng(0)), OutlineError
     ),
     "grasps_of_hand": (lambda v: grasps_of_hand(Outline(v), HandShape(0.5 + 0.8j)), OutlineError),
-    "births_and_merges": (
-        lambda v: births_and_merges(Outline(v), HandShape(0.5 + 0.8j)), OutlineError
-    ),
+    "sublevels": (lambda v: sublevels(v, HandShape(0.5 + 0.8j)), OutlineError),
     "offsets": (lambda v: offsets(Outline(v), 0.1, 8), OutlineError),
     "exterior_pieces": (
         lambda v: exterior_pieces(Outline(v), HandShape(0.5 + 0.8j)), OutlineError

@@ -17,7 +17,7 @@ import numpy as np
 
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.variables import fields_of
-from icage.arrays import ComplexArray, FloatArray, IntArray
+from icage.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
@@ -136,7 +136,8 @@ def moved(
     return np.column_stack([d.real, d.imag, theta + seen.theta, sigma])
 
 
-def collides(outline: Outline, fingers: FloatArray, radius: float, tolerance: float) -> bool:
-    """Whether any disc (3, 2) reaches deeper than ``tolerance`` [diameter] into the outline."""
-    depth = depth_inside(outline.vertices, fingers, radius)
-    return bool(depth.max() > tolerance * outline.diameter)
+def collide(outline: Outline, fingers: FloatArray, radius: float, tolerance: float) -> BoolArray:
+    """(n,) which hands (n, k, 2) reach deeper than ``tolerance`` [diameter] into the outline."""
+    depth = depth_inside(outline.vertices, fingers.reshape(-1, 2), radius)
+    deepest = depth.reshape(fingers.shape[:2]).max(axis=1)
+    return np.asarray(deepest > tolerance * outline.diameter)

@@ -15,7 +15,7 @@ import numpy as np
 
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.variables import VARIABLES, fields_of
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 from icage.cage import Cage, GraspMinimum
 from icage.errors import IcageError
 from icage.geometry.contact_types import Supports, supports
@@ -91,13 +91,18 @@ class Variants:
         usual = {name: one.nominal for name, one in VARIABLES.items()}
         self._usual = ShapeError(**fields_of("shape", usual))
 
-    def key(self, values: Mapping[str, FloatArray], row: int, shape: int) -> Key:
-        """The key of a trial's variant; ``shape`` numbers the shapes of the boundary's noise."""
+    def keys(self, values: Mapping[str, FloatArray], shapes: IntArray) -> list[Key]:
+        """The keys of the variants of trials (n); ``shapes`` (n,) number the shapes of the
+        boundary's noise.
+        """
         columns = fields_of("shape", values)
-        given = ShapeError(**{field: float(column[row]) for field, column in columns.items()})
-        if given == self._usual:
-            return None
-        return given, shape if given.noise > 0.0 else 0
+        usual = self._usual._asdict()
+        keys: list[Key] = [None] * len(shapes)
+        others = np.logical_or.reduce([columns[field] != usual[field] for field in columns])
+        for row in np.flatnonzero(others).tolist():
+            given = ShapeError(**{field: float(column[row]) for field, column in columns.items()})
+            keys[row] = given, int(shapes[row]) if given.noise > 0.0 else 0
+        return keys
 
     def make(self, key: Key) -> Variant | None:
         """The variant of a key, None if no such object or hand exists (it would cross itself)."""

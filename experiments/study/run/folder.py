@@ -61,32 +61,35 @@ class StudyFolder:
         with held_folder(self.path, "study"):
             yield
 
-    def shards(self) -> dict[tuple[int, int], Path]:
-        """(first, last) trial to file of every whole shard of this study; others are removed.
+    def shards(self) -> Iterator[tuple[tuple[int, int], Table]]:
+        """(first, last) trial and table of every whole shard of this study, in order; others are
+        removed.
 
         A shard that cannot be read, is of another study or overlaps an earlier one is run again.
         """
         with writable(self.path):
-            return self._shards()
+            yield from self._shards()
 
-    def _shards(self) -> dict[tuple[int, int], Path]:
-        found: dict[tuple[int, int], Path] = {}
+    def _shards(self) -> Iterator[tuple[tuple[int, int], Table]]:
         past = -1
         for path in sorted((self.path / SHARDS).glob("trials-*.parquet")):
             name = _NAME.fullmatch(path.name)
             span = (int(name[1]), int(name[2])) if name else (0, -1)
-            if span[0] > past and self._whole(path, span):
-                found[span], past = path, span[1]
-            else:
+            table = self._whole(path, span) if span[0] > past else None
+            if table is None:
                 path.unlink()
+            else:
+                past = span[1]
+                yield span, table
         for part in (self.path / SHARDS).glob(".trials-*"):  # of a process that was killed
             part.unlink()
-        return found
 
-    def _whole(self, path: Path, span: tuple[int, int]) -> bool:
+    def _whole(self, path: Path, span: tuple[int, int]) -> Table | None:
         table = self._read(path)
+        if table is None:
+            return None
         numbers = np.arange(span[0], span[1] + 1)
-        return table is not None and np.array_equal(table["trial"].to_numpy(), numbers)
+        return table if np.array_equal(table["trial"].to_numpy(), numbers) else None
 
     def _read(self, path: Path) -> Table | None:
         """A table of this study, every page of it as it was written; else None."""
@@ -163,12 +166,6 @@ class StudyFolder:
 
     def _write(self, table: Table, path: Path) -> None:
         write_table(table, path, {_KEY: self.fingerprint.encode()})
-
-
-def read_shards(shards: dict[tuple[int, int], Path]) -> Iterator[tuple[int, Table]]:
-    """(first trial, table) of shards, in order."""
-    for (first, _), path in sorted(shards.items()):
-        yield first, pq.read_table(path)
 
 
 def read_document(folder: Path) -> dict[str, Any] | None:

@@ -14,10 +14,10 @@ import numpy as np
 from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.design import Design
-from experiments.study.inputs.placements import Intended, collides, moved
+from experiments.study.inputs.placements import Intended, collide, moved
 from experiments.study.inputs.variants import Key, Variant, Variants
 from experiments.study.run.worlds import slope_of, worlds_of
-from icage.arrays import FloatArray, IntArray
+from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.membership import COLLIDES, Answers, query
@@ -94,12 +94,12 @@ def run_trials(study: Study, trials: IntArray) -> Ran:
     variants, which = _variants(study, values, trials)
     middles = np.array([0j if v is None else complex(v.hand.z.mean()) for v in variants])
     starts = moved(meant, values, cage, middles[which])
-    for i in np.flatnonzero(outcome < 0).tolist():
-        variant = variants[which[i]]
+    for number, variant in enumerate(variants):
+        rows = np.flatnonzero((outcome < 0) & (which == number))
         if variant is None:
-            outcome[i] = NO_SHAPE
-        elif _collides(variant, starts[i]):
-            outcome[i] = COLLISION_AT_START
+            outcome[rows] = NO_SHAPE
+        else:
+            outcome[rows[_collide(variant, starts[rows])]] = COLLISION_AT_START
     done = np.flatnonzero(outcome < 0)
     known = [v or study.variants.planned for v in variants]
     worlds = worlds_of(values, starts, np.array([v.outline.diameter for v in known])[which])
@@ -132,22 +132,18 @@ def _variants(
 ) -> tuple[list[Variant | None], IntArray]:
     """The variants of trials (n,), each once, and which one each trial has."""
     number: dict[Key, int] = {}
-    made: list[Variant | None] = []
     which = np.empty(len(trials), dtype=np.int64)
-    for row, shape in enumerate(study.design.shapes(trials).tolist()):
-        key = study.variants.key(values, row, shape)
-        if key not in number:
-            number[key] = len(made)
-            made.append(study.variants.make(key))
-        which[row] = number[key]
-    return made, which
+    for row, key in enumerate(study.variants.keys(values, study.design.shapes(trials))):
+        which[row] = number.setdefault(key, len(number))
+    return [study.variants.make(key) for key in number], which
 
 
-def _collides(variant: Variant, start: FloatArray) -> bool:
-    if not start[3] > 0.0:
-        return True
-    fingers = variant.hand.fingers(start)
-    return collides(variant.outline, fingers, variant.finger_radius, COLLISION)
+def _collide(variant: Variant, starts: FloatArray) -> BoolArray:
+    """(n,) which hands at starts (n, 4) touch the variant's object, or are shut."""
+    hits = ~(starts[:, 3] > 0.0)
+    fingers = variant.hand.fingers(starts[~hits])
+    hits[~hits] = collide(variant.outline, fingers, variant.finger_radius, COLLISION)
+    return hits
 
 
 def _judged(

@@ -13,7 +13,7 @@ import pyarrow as pa
 from experiments.io.arrow_table import Table
 from experiments.io.intervals import stopped_at
 from experiments.io.pieces import in_threads
-from experiments.study.run.folder import StudyFolder, read_shards
+from experiments.study.run.folder import StudyFolder
 from experiments.study.run.missing_trials import missing
 from experiments.study.run.rows import table_of, target_trials
 from experiments.study.run.shard import Study, run_trials
@@ -60,13 +60,14 @@ def run_study(
             return table, length
         folder.reopen(done)
     reached = _Prefix(study)
-    shards = folder.shards()
-    for first, table in read_shards(shards):
-        reached.add(first, target_trials(table))
+    spans: list[Span] = []
+    for span, table in folder.shards():
+        spans.append(span)
+        reached.add(span[0], target_trials(table))
     total = study.design.total
     report(reached.known, total)
     if reached.stop is None:
-        todo = missing(list(shards), total, size)
+        todo = missing(spans, total, size)
         with closing(backend(study, todo)) as pieces:
             for (first, _), table in pieces:
                 folder.keep(table, first)
@@ -75,7 +76,7 @@ def run_study(
                 if reached.stop is not None:
                     break
     length = reached.stop or _whole(study)
-    tables = [t.slice(0, max(length.at - f, 0)) for f, t in read_shards(folder.shards())]
+    tables = [t.slice(0, max(length.at - f, 0)) for (f, _), t in folder.shards()]
     table = pa.concat_tables(tables).replace_schema_metadata(None)
     _check_whole(table, length.at)
     folder.finish(table)

@@ -15,7 +15,7 @@ import numpy as np
 from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS
 from icage.cells.kernels.min_norm import INFEASIBLE, LeastNorm, min_norm_careful
 from icage.kernels import double_double as dd
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 
 _CAREFUL_SLACK = 1e-24
 """[diameter] In double-double a row may be violated by this: above rounding at 1e-32 of lengths
@@ -37,7 +37,7 @@ class _CarefulVector(NamedTuple):
     y_lo: float
 
 
-@compiled
+@compiled_borrowing
 def _careful_rows(pieces, z, facet, side, finger, piece, base, count):
     """Append the half planes of one finger's piece; ``side`` is the segment, not of length 1."""
     vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
@@ -129,7 +129,7 @@ def pass_careful(pieces, z, facet, cap, give):
     return min_norm_careful(rows, count, slack)
 
 
-@compiled
+@compiled_borrowing
 def _careful_put(g, ch, cl, cap, slack, rows, count):
     norm = math.sqrt(g.x_hi * g.x_hi + g.y_hi * g.y_hi)
     if ch + norm * cap < -slack:

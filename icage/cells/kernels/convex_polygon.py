@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first
 
 
 class Corners(NamedTuple):
@@ -68,9 +69,9 @@ def clip(polygon, n, line, spare, room):
             qy[m] = py[a] + t * (py[b] - py[a])
             qdone[m] = False
             m += 1
-    px[:m] = qx[:m]
-    py[:m] = qy[:m]
-    done[:m] = qdone[:m]
+    put_first(px, qx, m)
+    put_first(py, qy, m)
+    put_first(done, qdone, m)
     return m
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 
 MAX_EDGES = 12
 """Most edges of a merged piece: bounds the number of rows below."""
@@ -61,7 +61,7 @@ class Stretch(NamedTuple):
     y_hi: float
 
 
-@compiled
+@compiled_borrowing
 def facet_of(pieces, cell, finger, slot):
     """The facet of a cell (3,) where a finger is on the edge ``slot`` of its piece."""
     piece = cell[finger]
@@ -79,7 +79,7 @@ def facet_of(pieces, cell, finger, slot):
     )
 
 
-@compiled
+@compiled_borrowing
 def segment_of(pieces, facet):
     """The segment of a facet."""
     px = pieces.x[facet.start]
@@ -91,7 +91,7 @@ def segment_of(pieces, facet):
     return Segment(px, py, ex / length, ey / length, length)
 
 
-@compiled
+@compiled_borrowing
 def rows_of_others(pieces, z, facet, segment, base):
     """The half planes of both other fingers' pieces; returns how many."""
     vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
@@ -119,7 +119,7 @@ def rows_of_others(pieces, z, facet, segment, base):
     return count
 
 
-@compiled
+@compiled_borrowing
 def finger_on_segment(pieces, z, facet, wx, wy, base):
     """Where the finger of a facet may be along its segment for a given w."""
     segment = segment_of(pieces, facet)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.kernels import double_double as dd
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled_borrowing
 
 
 class NormStatus(IntEnum):
@@ -52,7 +52,7 @@ class LeastNorm(NamedTuple):
     w_y: float
 
 
-@compiled
+@compiled_borrowing
 def min_norm(rows, n, worst):
     """Least norm over ``rows[:n]`` = (g_x, g_y, c, error), |g| = 1, in doubles.
 
@@ -115,7 +115,7 @@ def min_norm(rows, n, worst):
     return LeastNorm(_certified(rows, n, worst, wx, wy, first, second), wx, wy)
 
 
-@compiled
+@compiled_borrowing
 def _certified(rows, n, worst, wx, wy, first, second):
     """Is |w| within ``worst`` of the truth? Weak duality below, a fat wedge of room above."""
     norm = np.hypot(wx, wy)
@@ -153,7 +153,7 @@ def _certified(rows, n, worst, wx, wy, first, second):
     return FOUND
 
 
-@compiled
+@compiled_borrowing
 def min_norm_careful(rows, n, slack):
     """The same in double-double: ``rows[:n]`` = (g_x, g_y, c), each hi, lo; |g| about 1.
 

@@ -31,6 +31,7 @@ from icage.cells.kernels.near import Hand, cells_near
 from icage.cells.kernels.plateau import Plateau, plateau_through, translations
 from icage.cells.kernels.tree import births
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import stable_order
 from icage.tolerance import DEPTH_CUT, SAME_POINT
 
 MOST_CELLS = 2_000_000
@@ -147,7 +148,7 @@ def nearest_minimum(pieces, z, wanted, reach, turn, cap, worst, most):
     count = 0
     best = -1
     plateau = nowhere
-    for k in np.argsort(low.value[:, BIRTH_SIGMA], kind="mergesort"):
+    for k in stable_order(low.value[:, BIRTH_SIGMA].copy()):
         sigma = low.value[k, BIRTH_SIGMA]
         if not 0.0 < sigma < np.inf:
             continue

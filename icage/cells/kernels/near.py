@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
+from icage.kernels.storage import put_first
 
 _WIDER = 100.0
 """[1] A configuration solved in doubles may sit a little inside a wall: where a finger is near no
@@ -23,7 +24,7 @@ class Hand(NamedTuple):
     w_y: float
 
 
-@compiled
+@compiled_borrowing
 def _gap_to(pieces, k, x, y):
     """Distance of a point from the nearest edge of piece k."""
     nearest = np.inf
@@ -39,25 +40,31 @@ def _gap_to(pieces, k, x, y):
     return nearest
 
 
-@compiled
-def pieces_near(pieces, x, y, reach):
-    """Pieces that have a point within about ``reach`` of the given one (relative coordinates).
+@compiled_borrowing
+def _is_near(pieces, k, x, y, reach):
+    """Whether piece k has a point within about ``reach`` of the given one.
 
     Half planes alone accept far too much beyond the tip of a sliver: outside them the true
     distance is taken.
     """
+    worst = np.inf
+    for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
+        a = pieces.slot_vertex[s]
+        inside = pieces.normal_x[s] * (x - pieces.x[a]) + pieces.normal_y[s] * (y - pieces.y[a])
+        worst = min(worst, inside)
+        if worst < -reach:
+            return False
+    return worst >= 0.0 or _gap_to(pieces, k, x, y) <= reach
+
+
+@compiled
+def pieces_near(pieces, x, y, reach):
+    """Pieces that have a point within about ``reach`` of the given one (relative coordinates)."""
     total = len(pieces.ptr) - 1
     found = np.empty(total, np.int64)
     count = 0
     for k in range(total):
-        worst = np.inf
-        for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
-            a = pieces.slot_vertex[s]
-            inside = pieces.normal_x[s] * (x - pieces.x[a]) + pieces.normal_y[s] * (y - pieces.y[a])
-            worst = min(worst, inside)
-            if worst < -reach:
-                break
-        if worst >= 0.0 or (worst >= -reach and _gap_to(pieces, k, x, y) <= reach):
+        if _is_near(pieces, k, x, y, reach):
             found[count] = k
             count += 1
     return found[:count]
@@ -79,7 +86,7 @@ def cells_near(pieces, z, hand, reach, most):
         found = pieces_near(pieces, x, y, reach)
         if len(found) == 0:
             found = pieces_near(pieces, x, y, _WIDER * reach)
-        near[f, : len(found)] = found
+        put_first(near[f], found, len(found))
         counts[f] = len(found)
         total *= len(found)
     if total > most:

@@ -31,7 +31,7 @@ from icage.cells.kernels.facet import (
     segment_of,
 )
 from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, LeastNorm, NormStatus, min_norm
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 
 _FIRST_GIVE = 1e-3
 """[CLEARANCE] What a facet that looks empty is given first; ten times more each try, up to all."""
@@ -73,7 +73,7 @@ def new_room():
     return Room(np.empty((MAX_BASE, 5)), np.empty((MAX_ROWS, 4)), np.zeros(2, np.int64))
 
 
-@compiled
+@compiled_borrowing
 def pass_fast(pieces, z, facet, cap, worst, room):
     """The least norm in doubles; ``cap`` is the largest sigma of interest."""
     base, rows = room.base, room.rows
@@ -110,7 +110,7 @@ def pass_fast(pieces, z, facet, cap, worst, room):
     return min_norm(rows, count, worst)
 
 
-@compiled
+@compiled_borrowing
 def _put(gx, gy, c, err, weight, cap, rows, count):
     """Store one row scaled to |g| = 1, unless it holds for every |w| <= cap or for none."""
     norm = math.sqrt(gx * gx + gy * gy)  # lengths near the diameter's: no overflow; hypot is slow
@@ -131,7 +131,7 @@ def _put(gx, gy, c, err, weight, cap, rows, count):
     return _Stored(count + 1, FOUND)
 
 
-@compiled
+@compiled_borrowing
 def pass_value(pieces, z, facet, cap, worst, room):
     """Least sigma on a facet; inf where there is none below ``cap``."""
     room.tally[0] += 1

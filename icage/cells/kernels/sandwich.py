@@ -24,6 +24,7 @@ from icage.cells.kernels.convex_polygon import (
 from icage.cells.kernels.cut import boundary_point, cut, other_rows
 from icage.cells.kernels.facet import MAX_BASE
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first
 
 CORNERS = 320
 """Room for the corners of either polygon."""
@@ -134,10 +135,10 @@ def sandwich(pieces, z, i, cell, level, start, enough, inner, outer):
         # the areas still differ, ask for less
         share = enough / (2.0 * m) if todo > 0 or share == 0.0 else 0.25 * share
         nh = hull(bx, by, nb, qx, qy)
-        hx[:nh] = qx[:nh]
-        hy[:nh] = qy[:nh]
-        bx[:nh] = qx[:nh]
-        by[:nh] = qy[:nh]
+        put_first(hx, qx, nh)
+        put_first(hy, qy, nh)
+        put_first(bx, qx, nh)
+        put_first(by, qy, nh)
         nb = nh
         thin = area(hx, hy, nh) < _THIN * area(px, py, m)
         # shoot from well inside: the middle of the outer polygon, cut down until it is in the set

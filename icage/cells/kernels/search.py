@@ -32,13 +32,13 @@ from icage.cells.kernels.columns import (
 from icage.cells.kernels.facet import facet_of, finger_on_segment
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.shrink import pivot
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.storage import (
-    grown_floats,
-    grown_ints,
     hash_slot,
     heap_pop,
     heap_push,
+    longer,
+    put_first,
     rehashed,
 )
 
@@ -101,7 +101,7 @@ class Explored(NamedTuple):
     values: np.ndarray
 
 
-@compiled
+@compiled_borrowing
 def birth(pieces, z, cell, cap, worst, room):
     """Least sigma of a cell (3,) and where.
 
@@ -129,7 +129,7 @@ def birth(pieces, z, cell, cap, worst, room):
     return Birth(best, wx, wy, at_finger, at_slot)
 
 
-@compiled
+@compiled_borrowing
 def _least_on_walls(pieces, z, cell, least, worst, room):
     """Least sigma with finger 1 or 2 on an edge that leads nowhere, or ``least`` if that is less.
 
@@ -176,7 +176,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
     outcome = CLOSED_IN
     standing = -1
     cell = np.empty(3, np.int64)
-    cell[:] = start
+    put_first(cell, start, 3)
     via = -1
     while True:
         # enter the cell
@@ -194,8 +194,8 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
         if 2 * n_nodes > len(keys):
             keys, values = rehashed(keys, values)
         if n_nodes == nodes.shape[0]:
-            nodes = grown_ints(nodes)
-            node_level = grown_floats(node_level)
+            nodes = longer(nodes)
+            node_level = longer(node_level)
         if cell[0] == cell[1] and cell[1] == cell[2]:
             outcome = ESCAPED
             break
@@ -238,16 +238,16 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
                 if n_records > 0 and value < records[n_records - 1, RECORD_BIRTH]:
                     records[n_records - 1, RECORD_BIRTH] = value
                 if n_edges == edges.shape[0]:
-                    edges = grown_ints(edges)
-                    edge_value = grown_floats(edge_value)
+                    edges = longer(edges)
+                    edge_value = longer(edge_value)
                 edges[n_edges, EDGE_FROM], edges[n_edges, EDGE_TO] = here, -1
                 edges[n_edges, EDGE_FINGER], edges[n_edges, EDGE_SLOT] = i, s
                 edges[n_edges, EDGE_KEY] = to_key
                 edge_value[n_edges, PASS_SIGMA] = value
                 edge_value[n_edges, PASS_WX], edge_value[n_edges, PASS_WY] = wx, wy
                 if n_heap == heap_value.shape[0]:
-                    heap_value = grown_floats(heap_value)
-                    heap_item = grown_ints(heap_item)
+                    heap_value = longer(heap_value)
+                    heap_item = longer(heap_item)
                 heap_push(heap_value[:, 0], heap_item[:, 0], n_heap, value, n_edges)
                 n_heap += 1
                 n_edges += 1
@@ -282,7 +282,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
             # pass was not reachable below it; ties (several facets through one vertex) included
             level = max(level, value)
             if n_records == records.shape[0]:
-                records = grown_floats(records)
+                records = longer(records)
             records[n_records, RECORD_LEVEL] = level
             records[n_records, RECORD_BIRTH] = _least_on_walls(pieces, z, cell, level, worst, room)
             records[n_records, RECORD_NODE] = n_nodes

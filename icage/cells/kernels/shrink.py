@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled_borrowing
 
 
-@compiled
+@compiled_borrowing
 def _blocks(pieces, k, ux, uy, vx, vy, length, tol):
     """Whether wall k bars the segment from u to v, of this length."""
     sx = vx - ux
@@ -52,7 +52,7 @@ def _blocks(pieces, k, ux, uy, vx, vy, length, tol):
     return True
 
 
-@compiled
+@compiled_borrowing
 def sees(pieces, ux, uy, vx, vy, tol, barred, pair):
     """Whether the open segment from u to v stays outside the object (both ends are outside).
 
@@ -71,7 +71,7 @@ def sees(pieces, ux, uy, vx, vy, tol, barred, pair):
     return True
 
 
-@compiled
+@compiled_borrowing
 def pivot(pieces, z, dx, dy, wx, wy, tol, barred):
     """A finger (0..2) that sees both others from where the hand stands, or -1.
 

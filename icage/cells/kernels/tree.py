@@ -30,6 +30,7 @@ from icage.cells.kernels.facet import facet_of
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first, stable_order
 
 NEITHER, SWALLOWED, SURVIVING = StartSide
 
@@ -61,14 +62,6 @@ class LowestCells(NamedTuple):
     cells: np.ndarray
     birth: np.ndarray
     birth_at: np.ndarray
-
-
-class Passes(NamedTuple):
-    """Births (m^3,) of all cells; edges (e, 4) and the levels (e,) of the passes."""
-
-    births: np.ndarray
-    edges: np.ndarray
-    values: np.ndarray
 
 
 @compiled
@@ -170,7 +163,7 @@ def merge(node_birth, edges, edge_value, below):
     merges = np.empty((n, 4), np.int64)
     lows = np.empty((n, 2))
     count = 0
-    order = np.argsort(edge_value, kind="mergesort")
+    order = stable_order(edge_value)
     for e in order:
         if edge_value[e] >= below:
             break
@@ -241,7 +234,7 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
                     for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
                         if pieces.slot_neighbour[s] < 0:
                             continue
-                        other[:] = cell
+                        put_first(other, cell, 3)
                         other[i] = pieces.slot_neighbour[s]
                         if low[other[0], other[1], other[2]] >= here - cut:
                             continue
@@ -266,37 +259,3 @@ def lowest_cells(pieces, z, cap, worst, tie, cut):
         births_out[n, BIRTH_WY] = at[a, b, c, 1]
         where_out[n] = where[a, b, c]
     return LowestCells(cells[:count], births_out, where_out)
-
-
-@compiled
-def all_passes(pieces, z, cap, worst):
-    """Births of all cells, and all passes as ``merge`` wants them.
-
-    Cell (a, b, c) has the number (a m + b) m + c. Complexity: m^3 cells, some 10 passes each.
-    """
-    m = len(pieces.ptr) - 1
-    room = new_room()
-    low = np.empty(m * m * m)
-    edges = np.empty((3 * m * m * len(pieces.slot_vertex) // 2 + 1, 4), np.int64)
-    values = np.empty(len(edges))
-    cell = np.empty(3, np.int64)
-    step = np.array([m * m, m, 1])
-    e = 0
-    for number in range(m * m * m):
-        cell[0], cell[1], cell[2] = number // (m * m), number // m % m, number % m
-        low[number] = birth(pieces, z, cell, cap, worst, room).sigma
-        if low[number] == np.inf:
-            continue
-        for i in range(3):
-            for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
-                if pieces.slot_neighbour[s] <= cell[i]:
-                    continue
-                value = pass_value(pieces, z, facet_of(pieces, cell, i, s), cap, worst, room).sigma
-                if value == np.inf:
-                    continue
-                edges[e, EDGE_FROM] = number
-                edges[e, EDGE_TO] = number + (pieces.slot_neighbour[s] - cell[i]) * step[i]
-                edges[e, EDGE_FINGER], edges[e, EDGE_SLOT] = i, s
-                values[e] = value
-                e += 1
-    return Passes(low, edges[:e], values[:e])

@@ -49,6 +49,7 @@ from icage.contact_space.kernels.rectangle import (
     seam_value,
 )  # fmt: skip
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import longer
 
 ESCAPED, CLOSED_IN, GAVE_UP = Ending
 
@@ -103,17 +104,6 @@ def configuration(space, i, j, k, s, u, out, at):
     out[at] = ax - (wx * space.z_re[i] - wy * space.z_im[i])
     out[at + 1] = ay - (wx * space.z_im[i] + wy * space.z_re[i])
     out[at + 2], out[at + 3] = wx, wy
-
-
-@compiled
-def longer(array):
-    """A copy with room for twice as many rows."""
-    rows, columns = array.shape
-    larger = np.empty((2 * rows, columns), array.dtype)
-    for a in range(rows):
-        for b in range(columns):
-            larger[a, b] = array[a, b]
-    return larger
 
 
 @compiled

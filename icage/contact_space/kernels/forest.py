@@ -15,6 +15,7 @@ from icage.contact_space.kernels.columns import (
     MERGE_YOUNGER,
 )
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import stable_order
 from icage.kernels.union_find import root_of
 
 
@@ -41,7 +42,7 @@ def persistence(births, edges, values, below):
     merges = np.empty((n, 3), np.int64)
     levels = np.empty(n)
     count = 0
-    for e in np.argsort(values, kind="mergesort"):
+    for e in stable_order(values):
         if values[e] >= below:
             break
         if edges[e, EDGE_TO] < 0:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.contact_space.kernels.columns import HAND_LEVEL, TUNNEL_KEPT
-from icage.contact_space.kernels.explore import configuration, longer
+from icage.contact_space.kernels.explore import configuration
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -38,6 +38,7 @@ from icage.contact_space.kernels.shooting import (
     touches,
 )
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import longer
 
 _LOWER = 1e-3
 """[tie] A distance falls on across a side if it is lower by this: above the rounding of the same

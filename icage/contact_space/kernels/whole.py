@@ -10,7 +10,7 @@ from numba import types
 from numba.typed import Dict
 
 from icage.contact_space.kernels.columns import NODE_S, NODE_SIGMA, NODE_U
-from icage.contact_space.kernels.explore import configuration, longer, region_key
+from icage.contact_space.kernels.explore import configuration, region_key
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -20,6 +20,7 @@ from icage.contact_space.kernels.rectangle import (
     seam_value,
 )
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import longer
 
 
 class Seams(NamedTuple):

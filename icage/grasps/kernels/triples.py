@@ -11,6 +11,7 @@ import numpy as np
 
 from icage.grasps.kernels.hands import first_finger
 from icage.kernels.compiled import compiled
+from icage.kernels.storage import put_first
 
 _CORNERS = 16
 """Room for the corners of a set of points of concurrency: a square cut by six planes."""
@@ -118,8 +119,8 @@ def _cut(planes, f, qx, qy, n, ox, oy):
     """Clip by both planes of feature f; the result is in q again."""
     for s in range(2):
         n = _clip(qx, qy, n, planes[f, s, 0], planes[f, s, 1], planes[f, s, 2], ox, oy)
-        qx[:n] = ox[:n]
-        qy[:n] = oy[:n]
+        put_first(qx, ox, n)
+        put_first(qy, oy, n)
         if n < 3:
             return 0
     return n
@@ -179,8 +180,8 @@ def _near_part(qx, qy, n, middle, near, ox, oy):
         a = 1.0 if s == 0 else (-1.0 if s == 1 else 0.0)
         b = 1.0 if s == 2 else (-1.0 if s == 3 else 0.0)
         n = _clip(qx, qy, n, a, b, a * middle[0] + b * middle[1] - near, ox, oy)
-        qx[:n] = ox[:n]
-        qy[:n] = oy[:n]
+        put_first(qx, ox, n)
+        put_first(qy, oy, n)
         if n < 3:
             return 0
     return n
@@ -266,14 +267,14 @@ def feasible_triples(kind, point, normal, planes, middle, reach, near, step, lim
         if m1 == 0:
             continue
         for b in range(a + 1, n):
-            q2x[:m1] = q1x[:m1]
-            q2y[:m1] = q1y[:m1]
+            put_first(q2x, q1x, m1)
+            put_first(q2y, q1y, m1)
             m2 = _cut(planes, b, q2x, q2y, m1, ox, oy)
             if m2 == 0:
                 continue
             for c in range(b + 1, n):
-                q3x[:m2] = q2x[:m2]
-                q3y[:m2] = q2y[:m2]
+                put_first(q3x, q2x, m2)
+                put_first(q3y, q2y, m2)
                 m3 = _cut(planes, c, q3x, q3y, m2, ox, oy)
                 if m3 == 0:
                     continue

@@ -105,8 +105,9 @@ def test_a_collapsed_refinement_is_none() -> None:
         else:
             with pytest.raises(GraspError, match="no minimum"):
                 grasp_on_curve(outline, 4.0, contacts, hand)
-    assert outcomes[False] >= 1  # 11 once collapsed; whoever is solved now has passed the checks
-    assert outcomes[True] >= 34
+    # 11 once collapsed, and 5 were balanced by forces of 1e11 between the walls of a slot that a
+    # finger just fills: by rounding of their directions.
+    assert outcomes == {True: 30, False: 15}
 
 
 @pytest.mark.slow

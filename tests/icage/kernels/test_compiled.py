@@ -9,11 +9,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from icage.cells.kernels.search import explore
 from icage.kernels import compiled as module
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.digest import kernel_digest
 from icage.kernels.machine import TOOLS
 
@@ -122,3 +123,59 @@ def test_the_t_shape_of_the_theory() -> None:
     sigma_0, _, sigma_max = (float(word) for word in answer().split())
     assert sigma_0 == pytest.approx(3.3, rel=1e-12)
     assert sigma_max / sigma_0 == pytest.approx(1.96, abs=0.01)
+
+
+LOADED = """
+import sys
+import numpy as np
+from icage.kernels.compiled import machine_code_at_once
+from icage.kernels.storage import stable_order
+machine_code_at_once()
+print(*stable_order(np.array([2.0, 1.0, 2.0])))
+print("numba.np.npyimpl" in sys.modules, "scipy.linalg" in sys.modules)
+"""
+
+
+@pytest.mark.slow
+def test_machine_code_is_loaded_without_what_compiles_it(tmp_path: Path) -> None:
+    """And neither way loads scipy's linear algebra."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "ICAGE_COMPILE_BEHIND": "0"}
+
+    def words() -> list[str]:
+        done = subprocess.run(
+            [sys.executable, "-c", LOADED], check=True, capture_output=True, text=True,
+            cwd=Path(__file__).parents[3], env=environment,
+        )  # fmt: skip
+        return done.stdout.split()
+
+    assert words() == ["1", "0", "2", "True", "False"]
+    assert words() == ["1", "0", "2", "False", "False"]
+
+
+@compiled
+def _of_an_own_array(values):  # type: ignore[no-untyped-def]
+    own = np.zeros(3)
+    own[1] = values[0]
+    return own.sum()
+
+
+@compiled_borrowing
+def _of_another(values):  # type: ignore[no-untyped-def]
+    return 2.0 * _of_an_own_array(values)
+
+
+@compiled_borrowing
+def _array(values):  # type: ignore[no-untyped-def]
+    return np.zeros(len(values))
+
+
+def test_a_kernel_that_borrows_may_call_one_that_makes_arrays() -> None:
+    assert _of_another.dispatcher(np.array([1.5])) == 3.0  # type: ignore[attr-defined]
+
+
+def test_a_kernel_that_borrows_cannot_make_an_array() -> None:
+    """References to it would be counted by nobody: it does not compile."""
+    import numba
+
+    with pytest.raises(numba.TypingError):
+        _array.dispatcher(np.array([1.5]))  # type: ignore[attr-defined]

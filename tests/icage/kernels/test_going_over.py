@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, cast
 
 import numpy as np
@@ -44,6 +45,7 @@ class Others:
     def __init__(self, at_work: bool, ready: bool) -> None:
         self.working, self.finished, self.looks = at_work, ready, 0
         self.added: list[str] = []
+        self.alone: list[str] = []
 
     def start(self) -> None:
         pass
@@ -59,8 +61,11 @@ class Others:
         assert name.endswith(("summed", "inverse"))
         return self.finished
 
-    def wait_for(self, name: str) -> None:
-        self.working = False
+    @contextmanager
+    def alone_with(self, name: str, *, patient: bool) -> Iterator[None]:
+        assert patient
+        self.alone.append(name)
+        yield
 
 
 @pytest.fixture
@@ -72,6 +77,7 @@ def fresh(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Others]:
         process = module._Process()
         process.never = False
         monkeypatch.setattr(module, "background", others)
+        monkeypatch.setattr(module, "claims", others)
         monkeypatch.setattr(module, "_process", process)
         for kernel in (summed, inverse):
             monkeypatch.setattr(kernel, "machine", None)
@@ -151,7 +157,7 @@ def test_a_long_call_waits_in_the_end(
     others = fresh(at_work=True)
     module._process.spent = module.COMPILE_PATIENCE + 1.0
     assert summed(VALUES) == 9950.0
-    assert not others.working
+    assert others.alone == [summed.name]  # type: ignore[attr-defined]
     assert machine_calls(summed) == 1
 
 
@@ -169,7 +175,7 @@ def test_huge_arguments_are_not_interpreted(fresh: Callable[..., Others]) -> Non
     others = fresh(at_work=True)
     assert summed(np.ones(module.HUGE + 1)) == 0.5 * (module.HUGE + 1)
     assert machine_calls(summed) == 1
-    assert not others.working  # it was waited for
+    assert others.alone == [summed.name]  # type: ignore[attr-defined]  # it was waited for
 
 
 def test_patience_is_that_of_the_whole_process(fresh: Callable[..., Others]) -> None:

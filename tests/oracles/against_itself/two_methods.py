@@ -9,7 +9,7 @@ from numpy.random import Generator
 
 from icage.agreement import difference
 from icage.cage import Cage
-from icage.cells.sublevels import births_and_merges
+from icage.cells.sublevels import sublevels_of
 from icage.contact_space.exploration import Plane
 from icage.contact_space.method import CONTACT_SPACE
 from icage.contact_space.sublevel import sublevels
@@ -111,10 +111,14 @@ def judge_trees(seed: int, number: int) -> Outcome:
     outcome = Outcome(number, target.family)
     try:
         outline, hand = Outline(target.vertices), HandShape.from_contacts(target.contacts)
-        cells = births_and_merges(outline, hand)
+        cells = sublevels_of(outline, hand)
         found = sublevels(Plane.around(outline, hand))
         outcome.verdict = "tree"
-        compare_trees(cells, np.column_stack([found.births, found.merges]), outcome)
+        compare_trees(
+            np.column_stack([cells.births, cells.merges]),
+            np.column_stack([found.births, found.merges]),
+            outcome,
+        )
     except Exception as error:
         outcome.exceptions.append(f"{type(error).__name__}: {error}")
     return outcome

@@ -74,7 +74,7 @@ def parts(values: dict[str, FloatArray]) -> dict[str, Any]:
         "place": moved(rows, values, cage, hands).tolist(),
         "world": {f.name: getattr(worlds, f.name).tolist() for f in fields(Worlds)},
         "slope": {f.name: getattr(slope_of(values), f.name).tolist() for f in fields(Slope)},
-        "shape": Variants(study.config, cage).key(values, 0, 5),
+        "shape": Variants(study.config, cage).keys(values, np.array([5, 5]))[0],
     }
 
 

@@ -87,7 +87,7 @@ def test_a_bad_shard_is_run_again(
 ):
     study.broken_off(monkeypatch, 3, "--shard", "17", "--threads", "1")
     spoil(study.shards[1])
-    held = {path.name for path in StudyFolder(study.path, _print_of(study)).shards().values()}
+    held = dict(StudyFolder(study.path, _print_of(study)).shards())
     assert len(held) == 2
     assert study.resume("--shard", "40").code == 0
     study.check_same(left_alone(folder))
@@ -229,7 +229,7 @@ def test_death_at_every_step(
         kept = np.zeros(24, dtype=bool)
         finished = place.finished()
         kept[: 0 if finished is None else len(finished)] = True
-        for first, last in place.shards():
+        for (first, last), _ in place.shards():
             kept[first : last + 1] = True
         again = run(place, study, 5)
         np.testing.assert_array_equal(again.given, ~kept)
