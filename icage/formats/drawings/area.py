@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
+from icage.formats.drawings.ends import joined
 from icage.formats.drawings.fill import filled
 
 MAX_POINTS: Final = 200_000
@@ -58,10 +56,23 @@ def drawn_area(line: Line, within: float) -> shapely.Geometry:
     return _clipped(area, line.clips, within)
 
 
-def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:
-    """What lines enclose together: every point that cannot get away without crossing one.
+class Enclosed(NamedTuple):
+    """What lines enclose together.
 
-    Ends of lines nearer to each other than ``gap`` are one point, the middle of them.
+    Attributes
+    ----------
+    area:
+        Every point that cannot get away without crossing a line.
+    loose:
+        (m, 2) = ends of lines that met no other end, if any line bounds nothing; else none.
+    """
+
+    area: shapely.Geometry
+    loose: FloatArray
+
+
+def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
+    """What lines enclose; ends of lines nearer to each other than ``gap`` are one point.
 
     Raises
     ------
@@ -70,11 +81,15 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geomet
     """
     paths = [points_of(line.chain, within) for line in lines]
     check_points(sum(len(path) for path in paths))
-    paths = [path for path in _joined(paths, gap) if len(path) > 1]
+    paths, loose = joined(paths, gap)
+    paths = [path for path in paths if len(path) > 1]
     if not paths:
-        return shapely.Polygon()
-    edges = shapely.union_all([shapely.LineString(path) for path in paths])
-    return shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(edges))))
+        return Enclosed(shapely.Polygon(), loose)
+    edges = shapely.get_parts(shapely.union_all([shapely.LineString(path) for path in paths]))
+    faces, _, dangling, _ = shapely.polygonize_full(edges)
+    if shapely.is_empty(dangling):
+        loose = np.zeros((0, 2))
+    return Enclosed(shapely.union_all(shapely.get_parts(faces)), loose)
 
 
 def check_points(count: int) -> None:
@@ -93,23 +108,3 @@ def _clipped(
             area, shapely.union_all([area_of(shape, within) for shape in clip])
         )
     return area
-
-
-def _joined(paths: list[FloatArray], gap: float) -> list[FloatArray]:
-    """The paths with the ends of each cluster at one point; a closed path stays as it is."""
-    loose = [k for k, path in enumerate(paths) if not (path[0] == path[-1]).all()]
-    if not loose:
-        return paths
-    ends = np.vstack([paths[k][[0, -1]] for k in loose])
-    pairs = KDTree(ends).query_pairs(gap, output_type="ndarray")
-    ones = np.ones(len(pairs))
-    graph = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
-    count, cluster = connected_components(graph, directed=False)
-    middle = np.zeros((count, 2))
-    np.add.at(middle, cluster, ends)
-    middle /= np.bincount(cluster)[:, None]
-    moved = list(paths)
-    for row, k in enumerate(loose):
-        moved[k] = paths[k].copy()
-        moved[k][[0, -1]] = middle[cluster[[2 * row, 2 * row + 1]]]
-    return moved

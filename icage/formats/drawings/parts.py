@@ -12,6 +12,7 @@ import shapely
 from icage.errors import FormatError
 from icage.formats.drawings.area import area_of, drawn_area, enclosed
 from icage.formats.drawings.drawing import Drawing, Line, Shape
+from icage.formats.drawings.ends import where_loose
 from icage.formats.drawings.reading import BY_ID, LARGEST, Reading
 from icage.outline import LARGEST_COORDINATE
 
@@ -74,7 +75,9 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
     areas = [area_of(shape, within) for shape in drawing.shapes]
     areas, said = _without_background(areas, drawing, reading)
     notes += said
-    areas += _of_lines(drawing, reading, within, gap)
+    more, said = _of_lines(drawing, reading, within, gap)
+    areas += more
+    notes += said
     whole = _polygons(shapely.union_all(areas))
     parts = [part for part in _joined(whole, tolerance) if size(part) > tolerance]
     if not parts:
@@ -114,19 +117,23 @@ def check_painted(drawing: Drawing, reading: Reading) -> None:
 
 def _of_lines(
     drawing: Drawing, reading: Reading, within: float, gap: float
-) -> list[shapely.Geometry]:
+) -> tuple[list[shapely.Geometry], list[str]]:
     """The areas that lines enclose and, if asked for, that their drawn width covers."""
     if not lines_count(drawing, reading):
-        return []
-    areas = [enclosed(drawing.lines, within, gap)]
+        return [], []
+    inside = enclosed(drawing.lines, within, gap)
+    areas = [inside.area]
     if reading.strokes == "drawn":
-        areas += [drawn_area(line, within) for line in drawing.lines]
-    elif shapely.is_empty(areas[0]) and not drawing.shapes:
+        return areas + [drawn_area(line, within) for line in drawing.lines], []
+    helps = f"--gap G joins ends nearer than G (now {gap:.3g}, in units of the file)"
+    if shapely.is_empty(inside.area) and not drawing.shapes:
         raise FormatError(
-            f"the {len(drawing.lines)} lines of the drawing enclose no area; where their ends do "
-            f"not meet, --gap G joins ends nearer than G ({gap:.3g} units of the file now)"
+            f"the {len(drawing.lines)} lines of the drawing enclose no area: they have "
+            f"{where_loose(inside.loose)}; {helps}"
         )
-    return areas
+    if len(inside.loose) and drawing.edges:
+        return areas, [f"lines with {where_loose(inside.loose)}, bound nothing; {helps}"]
+    return areas, []
 
 
 def _without_background(
