@@ -64,7 +64,7 @@ class Enclosed(NamedTuple):
     area:
         Every point that cannot get away without crossing a line.
     loose:
-        (m, 2) = ends of lines that met no other end, if any line bounds nothing; else none.
+        (m, 2) = ends of lines that met no other end and lie outside of the area.
     """
 
     area: shapely.Geometry
@@ -87,9 +87,13 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
         return Enclosed(shapely.Polygon(), loose)
     edges = shapely.get_parts(shapely.union_all([shapely.LineString(path) for path in paths]))
     faces, _, dangling, _ = shapely.polygonize_full(edges)
+    area = shapely.union_all(shapely.get_parts(faces))
     if shapely.is_empty(dangling):
         loose = np.zeros((0, 2))
-    return Enclosed(shapely.union_all(shapely.get_parts(faces)), loose)
+    elif len(loose):
+        shapely.prepare(area)
+        loose = loose[~shapely.covers(area, shapely.points(loose))]
+    return Enclosed(area, loose)
 
 
 def check_points(count: int) -> None:

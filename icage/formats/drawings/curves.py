@@ -39,7 +39,7 @@ class Curve(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bezier:
-    """A Bezier curve of degree 1, 2 or 3 by its control points (degree + 1, 2)."""
+    """A Bezier curve of any degree by its control points (degree + 1, 2)."""
 
     control: FloatArray
 
@@ -67,9 +67,11 @@ class Bezier:
         for column in first.T:
             if len(column) == 2:
                 powers = [column[1] - column[0], column[0]]
-            else:
+            elif len(column) == 3:
                 a, b, c = column
                 powers = [a - 2.0 * b + c, 2.0 * (b - a), a]
+            else:
+                powers = powers_of(column)[::-1].tolist()
             scale = max(abs(power) for power in powers)
             if scale > 0.0:
                 roots = np.roots(np.array(powers) / scale)
@@ -128,6 +130,19 @@ class Polyline:
     def turns(self) -> list[float]:
         """The parameters of all points between the ends."""
         return (np.arange(1, len(self.points) - 1) / (len(self.points) - 1)).tolist()
+
+
+def powers_of(bernstein: FloatArray) -> FloatArray:
+    """(n + 1,) = coefficients of 1, t, ..., t^n of a polynomial by its Bernstein coefficients.
+
+    >>> powers_of(np.array([0.0, 0.5, 1.0])).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    n = len(bernstein) - 1
+    differences = [bernstein]
+    while len(differences) <= n:
+        differences.append(np.diff(differences[-1]))
+    return np.array([math.comb(n, k) * row[0] for k, row in enumerate(differences)])
 
 
 def flatten(curve: Curve, within: float) -> FloatArray:
