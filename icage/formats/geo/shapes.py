@@ -73,10 +73,9 @@ def drawing_of(found: Found, notes: Iterable[str]) -> Drawing:
 
 def may_be_degrees(found: Found) -> bool:
     """Whether all coordinates are such as longitude and latitude may be."""
-    rings = [ring for shape in found.shapes for ring in shape.rings]
-    points = [c.at(np.linspace(0, 1, 2)) for ring in rings for c in ring]
-    corners = [c.points for ring in rings for c in ring if isinstance(c, Polyline)] or points
-    return bool(corners) and bool((np.abs(np.vstack(corners)) <= [180.0, 90.0]).all())
+    chains = [ring for shape in found.shapes for ring in shape.rings]
+    points = [curve.points for ring in chains for curve in ring if isinstance(curve, Polyline)]
+    return bool(points) and bool((np.abs(np.vstack(points)) <= [180.0, 90.0]).all())
 
 
 def _parts(geometry: shapely.Geometry) -> Iterable[shapely.Geometry]:
