@@ -10,6 +10,7 @@ import shapely
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
+from icage.formats.drawings.crossings import check_crossings
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
 from icage.formats.drawings.ends import joined
@@ -88,6 +89,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
     paths = [path for path in paths if len(path) > 1]
     if not paths:
         return Enclosed(shapely.Polygon(), loose)
+    check_crossings(paths)
     grid = _ROUNDING * float(np.abs(np.vstack(paths)).max())
     whole = shapely.union_all([shapely.LineString(path) for path in paths], grid_size=grid)
     edges = shapely.get_parts(whole)

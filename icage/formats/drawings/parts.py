@@ -22,6 +22,9 @@ FLATTEN: Final = 0.02
 _RECTANGLE: Final = 1.0 - 1e-9
 """Share of its bounding box that a rectangle covers."""
 
+MAX_PARTS: Final = 5_000
+"""Separate areas, before those that are near to each other are joined."""
+
 _SHOWN: Final = 6
 """Names or areas told at most."""
 
@@ -187,6 +190,8 @@ def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
     """Parts nearer to each other than the tolerance are one: closed by half of it, then opened."""
     if len(parts) < 2:
         return parts
+    if len(parts) > MAX_PARTS:
+        raise FormatError(f"the drawing has more than {MAX_PARTS} separate filled parts")
     half = tolerance / 2.0
     grown = _polygons(shapely.union_all(shapely.buffer(parts, half, join_style="mitre")))
     if len(grown) == len(parts):

@@ -15,6 +15,9 @@ from icage.formats.drawings.area import MAX_POINTS
 from icage.formats.drawings.curves import Polyline
 from icage.formats.drawings.drawing import Drawing, Line, Ring, Shape
 
+MAX_PARTS: Final = 10_000
+"""Polygons and lines of a file."""
+
 DEGREES: Final = (
     "coordinates are read as lengths in a plane; if these are degrees of longitude and latitude, "
     "project them first"
@@ -43,6 +46,8 @@ def add(geometry: shapely.Geometry, names: tuple[str, ...], found: Found) -> Non
     if found.points > MAX_POINTS:
         raise FormatError(f"the file has more than {MAX_POINTS} points")
     for part in _parts(geometry):
+        if len(found.shapes) + len(found.lines) >= MAX_PARTS:
+            raise FormatError(f"the file has more than {MAX_PARTS} polygons and lines")
         kind = part.geom_type
         if not np.isfinite(shapely.get_coordinates(part)).all():
             raise FormatError(f"a {kind} has coordinates that are not finite")

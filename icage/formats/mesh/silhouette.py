@@ -16,14 +16,12 @@ import shapely
 from icage.arrays import FloatArray
 from icage.errors import FormatError
 from icage.formats.drawings.area import without_slits
+from icage.formats.drawings.crossings import check_crossings
 from icage.formats.drawings.curves import Polyline
 from icage.formats.drawings.drawing import Drawing, Ring, Shape
 
 MAX_CONTOUR: Final = 100_000
 """Contour edges."""
-
-MAX_PAIRS: Final = 1_000_000
-"""Pairs of contour edges whose boxes meet."""
 
 CRACK: Final = 1e-6
 """[size] Narrower cracks between triangles are closed."""
@@ -55,10 +53,12 @@ def silhouette(triangles: FloatArray) -> Drawing:
     turned = np.where((area[seen] > 0.0)[:, None, None], flat[seen], flat[seen][:, ::-1])
     contour = _contour(turned)
     if len(contour) > MAX_CONTOUR:
-        raise _too_many(f"{len(contour)} edges")
-    lines = shapely.linestrings(contour)
-    _check_crossings(lines)
-    whole = shapely.union_all(lines, grid_size=CRACK / 100.0 * size)
+        raise FormatError(
+            f"the contour of the mesh has {len(contour)} edges, at most {MAX_CONTOUR} are "
+            "allowed: simplify the mesh, or cut it (--section)"
+        )
+    check_crossings(contour)
+    whole = shapely.union_all(shapely.linestrings(contour), grid_size=CRACK / 100.0 * size)
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(whole)))
     outer = without_slits(shapely.union_all(faces), CRACK * size)
     holes = _holes(faces, turned, size)
@@ -82,22 +82,6 @@ def _contour(triangles: FloatArray) -> FloatArray:
     backward = np.bincount(where.ravel(), a > b, minlength=len(edges)) > 0
     alone = edges[forward != backward]
     return np.stack([points[alone // len(points)], points[alone % len(points)]], axis=1)
-
-
-def _check_crossings(lines: np.ndarray) -> None:
-    """Refuse a tangle before the union of it takes minutes; counted in steps, not all at once."""
-    tree = shapely.STRtree(lines)
-    pairs = 0
-    for start in range(0, len(lines), 20):
-        pairs += tree.query(lines[start : start + 20]).shape[1]
-        if pairs > 2 * MAX_PAIRS:
-            raise _too_many(f"more than {MAX_PAIRS} pairs of edges that may cross")
-
-
-def _too_many(what: str) -> FormatError:
-    return FormatError(
-        f"the contour of the mesh has {what}: simplify the mesh, or cut it (--section)"
-    )
 
 
 def _holes(faces: np.ndarray, triangles: FloatArray, size: float) -> shapely.Geometry:
