@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.polynomial import polynomial
 
 from icage.arrays import FloatArray
 from icage.formats.drawings.curves import Bezier, powers_of
+
+
+_NEARLY_REAL: Final = 1e-2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,8 +66,19 @@ class RationalBezier:
             scale = float(np.abs(slope).max())
             if scale > 0.0:
                 roots = np.roots(slope[::-1] / scale)
-                zeros += [float(root.real) for root in roots if abs(root.imag) < 1e-6]
+                near = roots.real[np.abs(roots.imag) < _NEARLY_REAL]
+                zeros += _polished(slope / scale, near).tolist()
         return [zero for zero in zeros if 0.0 < zero < 1.0]
+
+
+def _polished(powers: FloatArray, zeros: FloatArray) -> FloatArray:
+    """Newton's steps: the roots of a high degree come with few digits. One too many is harmless."""
+    slope = polynomial.polyder(powers)
+    for _ in range(4):
+        with np.errstate(all="ignore"):
+            step = polynomial.polyval(zeros, powers) / polynomial.polyval(zeros, slope)
+        zeros = zeros - np.where(np.abs(step) < _NEARLY_REAL, step, 0.0)
+    return zeros
 
 
 def _longest(vectors: FloatArray) -> float:

@@ -175,9 +175,7 @@ def _flattened(chain: list[Curve], shown: Shown) -> Ring:
     """The chain in the xy plane, its height left out."""
     bounds = np.vstack([vectors_of(curve) for curve in chain])
     if not np.isfinite(bounds).all() or np.abs(bounds).max() > LARGEST_COORDINATE:
-        raise FormatError(
-            f"coordinates that are not finite or beyond {LARGEST_COORDINATE:g}"
-        )
+        raise FormatError(f"coordinates that are not finite or beyond {LARGEST_COORDINATE:g}")
     low, high = bounds.min(axis=0), bounds.max(axis=0)
     if high[2] - low[2] > _FLAT * float((high - low).max()):
         raise FormatError(

@@ -80,7 +80,9 @@ def largest_blob(image: Pixels, threshold: float | None) -> Blob:
     if others > 0:
         share = 100.0 * (sizes.sum() - area) / sizes.sum()
         blobs = "another blob was" if others == 1 else f"{others} other blobs were"
-        notes.append(f"{blobs} left out, with {share:.2g} % of the object's pixels: the largest counts")
+        notes.append(
+            f"{blobs} left out, with {share:.2g} % of the object's pixels: the largest counts"
+        )
     del labels
     notes += _cut_off(mine)
     return _cropped(values, inside, mine, level, (ground, body), tuple(notes))

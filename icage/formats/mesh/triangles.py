@@ -61,6 +61,8 @@ def fans(counts: IntArray, numbers: IntArray) -> IntArray:
     >>> fans(np.array([4, 3]), np.array([0, 1, 2, 3, 7, 8, 9])).tolist()
     [[0, 1, 2], [0, 2, 3], [7, 8, 9]]
     """
+    if not len(counts):
+        return np.zeros((0, 3), dtype=np.int64)
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
     triangles = np.maximum(counts - 2, 0)
     check_count(int(triangles.sum()))

@@ -38,9 +38,7 @@ def test_an_insert_turns_scales_and_mirrors(
     sx, sy = (-sx if flips[0] else sx), (-sy if flips[1] else sy)
     document, space = new()
     block_of_an_l(document)
-    space.add_blockref(
-        "PART", (x, y), dxfattribs={"rotation": angle, "xscale": sx, "yscale": sy}
-    )
+    space.add_blockref("PART", (x, y), dxfattribs={"rotation": angle, "xscale": sx, "yscale": sy})
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     turn = np.array([[c, -s], [s, c]])
     exact = shapely.transform(L_SHAPE, lambda p: (p * [sx, sy]) @ turn.T)

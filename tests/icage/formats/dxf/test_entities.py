@@ -26,9 +26,7 @@ def disc(radius: float, cx: float = 0.0, cy: float = 0.0, n: int = 20_000) -> sh
 
 
 def oval(rx: float, ry: float, turn: float = 0.0) -> shapely.Polygon:
-    return shapely.transform(
-        disc(1.0), lambda p: (p * [rx, ry]) @ _rotation(turn).T
-    )
+    return shapely.transform(disc(1.0), lambda p: (p * [rx, ry]) @ _rotation(turn).T)
 
 
 def _rotation(angle: float) -> np.ndarray:

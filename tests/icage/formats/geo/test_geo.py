@@ -135,9 +135,7 @@ def test_geojson_named_json_is_told_from_a_case(tmp_path: Path):
         ("a.geojson", '{"type": "Polygon", "coordinates": [[["0",1]]]}', "a number is needed"),
     ],
 )
-def test_a_text_that_is_not_understood_is_refused(
-    tmp_path: Path, name: str, text: str, why: str
-):
+def test_a_text_that_is_not_understood_is_refused(tmp_path: Path, name: str, text: str, why: str):
     with pytest.raises(FormatError, match=why) as caught:
         traced_bytes(tmp_path, name, text, unit="mm")
     assert "\n" not in str(caught.value)

@@ -157,9 +157,7 @@ def test_an_open_mesh_is_told_and_joined_within_the_gap(tmp_path: Path):
 
 
 def stl_of(triangles: np.ndarray) -> bytes:
-    rows = b"".join(
-        struct.pack("<12fH", 0, 0, 0, *corners.ravel(), 0) for corners in triangles
-    )
+    rows = b"".join(struct.pack("<12fH", 0, 0, 0, *corners.ravel(), 0) for corners in triangles)
     return b"solid by hand".ljust(80) + struct.pack("<I", len(triangles)) + rows
 
 
