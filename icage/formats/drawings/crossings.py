@@ -29,7 +29,7 @@ def check_crossings(paths: Sequence[FloatArray]) -> None:
         More than ``MAX_NEAR`` or ``MAX_CROSSINGS`` pairs.
     """
     ends = [np.stack([path[:-1], path[1:]], axis=1) for path in paths]
-    edges = shapely.linestrings(np.concatenate(ends))
+    edges = np.asarray(shapely.linestrings(np.concatenate(ends)))
     tree = shapely.STRtree(edges)
     near, crossings = 0, 0
     for start in range(0, len(edges), _STEP):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -65,7 +65,8 @@ def where_loose(loose: FloatArray) -> str:
     """How many ends are loose and where the nearest two are, in words."""
     if len(loose) < 2:
         return f"{len(loose)} loose end" + "s" * (len(loose) != 1)
-    distances, others = KDTree(loose).query(loose, k=2)
+    found: Any = KDTree(loose).query(loose, k=2)
+    distances, others = found
     first = int(distances[:, 1].argmin())
     a, b = loose[first], loose[int(others[first, 1])]
     return (
@@ -85,7 +86,7 @@ def _clusters(places: FloatArray, loose: np.ndarray, gap: float) -> IntArray:
                 f"more than {MAX_PAIRS} pairs of ends of lines are nearer to each other than the "
                 f"gap of {gap:.3g} units of the file; give a smaller gap"
             )
-        found = few.sparse_distance_matrix(tree, gap, output_type="ndarray")
+        found: Any = few.sparse_distance_matrix(tree, gap, output_type="ndarray")
         a, b = some[found["i"]], found["j"]
         order = np.argsort(found["v"], kind="stable")
         still = loose.copy()

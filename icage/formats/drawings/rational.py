@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
-from numpy.polynomial import polynomial
 
 from icage.arrays import FloatArray
-from icage.formats.drawings.curves import Bezier, powers_of
-
-
-_NEARLY_REAL: Final = 1e-2
+from icage.formats.drawings.curves import Bezier
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,31 +49,25 @@ class RationalBezier:
         return (ddn + 2.0 * dw * slope + ddw * furthest) / least
 
     def turns(self) -> list[float]:
-        """Zeros of N' w - N w', for x and y."""
-        w = powers_of(self.weights)
+        """Extrema of x and y between 64 samples a degree, each found by trisection.
+
+        The zeros of p' have too few digits in powers of t, where weights differ by far.
+        """
+        t = np.linspace(0.0, 1.0, 64 * len(self.weights) + 1)
         zeros: list[float] = []
-        for column in (self.control * self.weights[:, None]).T:
-            n = powers_of(column)
-            slope = polynomial.polysub(
-                polynomial.polymul(polynomial.polyder(n), w),
-                polynomial.polymul(n, polynomial.polyder(w)),
-            )
-            scale = float(np.abs(slope).max())
-            if scale > 0.0:
-                roots = np.roots(slope[::-1] / scale)
-                near = roots.real[np.abs(roots.imag) < _NEARLY_REAL]
-                zeros += _polished(slope / scale, near).tolist()
+        for axis, values in enumerate(self.at(t).T):
+            rising = np.diff(values) > 0.0
+            middle = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+            if not len(middle):
+                continue
+            low, high = t[middle - 1], t[middle + 1]
+            sign = np.where(rising[middle - 1], 1.0, -1.0)
+            for _ in range(60):
+                left, right = (2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0
+                keep_left = sign * self.at(left)[:, axis] > sign * self.at(right)[:, axis]
+                low, high = np.where(keep_left, low, left), np.where(keep_left, right, high)
+            zeros += ((low + high) / 2.0).tolist()
         return [zero for zero in zeros if 0.0 < zero < 1.0]
-
-
-def _polished(powers: FloatArray, zeros: FloatArray) -> FloatArray:
-    """Newton's steps: the roots of a high degree come with few digits. One too many is harmless."""
-    slope = polynomial.polyder(powers)
-    for _ in range(4):
-        with np.errstate(all="ignore"):
-            step = polynomial.polyval(zeros, powers) / polynomial.polyval(zeros, slope)
-        zeros = zeros - np.where(np.abs(step) < _NEARLY_REAL, step, 0.0)
-    return zeros
 
 
 def _longest(vectors: FloatArray) -> float:

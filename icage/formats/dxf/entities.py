@@ -24,10 +24,12 @@ from icage.formats.dxf.splines import bezier_pieces, fitted
 Chains: TypeAlias = "list[Ring]"
 
 NO_OUTLINE: Final = frozenset(
-    "TEXT MTEXT ATTRIB ATTDEF DIMENSION ARC_DIMENSION LARGE_RADIAL_DIMENSION LEADER MULTILEADER "
-    "MLEADER TOLERANCE POINT XLINE RAY VIEWPORT ACAD_TABLE TABLE LIGHT SUN CAMERA SEQEND "
-    "SECTIONOBJECT GEOPOSITIONMARKER".split()
-)
+    [
+        "TEXT", "MTEXT", "ATTRIB", "ATTDEF", "DIMENSION", "ARC_DIMENSION",
+        "LARGE_RADIAL_DIMENSION", "LEADER", "MULTILEADER", "MLEADER", "TOLERANCE", "POINT",
+        "XLINE", "RAY", "VIEWPORT", "ACAD_TABLE", "LIGHT", "SUN", "CAMERA", "SEQEND",
+    ]
+)  # fmt: skip
 """Annotation and construction: left out, and said so."""
 
 _STRAIGHT: Final = 1e-9

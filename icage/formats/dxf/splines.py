@@ -61,7 +61,7 @@ def _piece(degree: int, knots: FloatArray, control: FloatArray, span: int) -> Fl
 def _blossom(
     degree: int, knots: FloatArray, control: FloatArray, span: int, places: list[float]
 ) -> FloatArray:
-    """de Boor's recursion with another parameter in each round."""
+    """The recursion of de Boor with another parameter in each round."""
     rows = [control[span - degree + j] for j in range(degree + 1)]
     for level, place in enumerate(places, start=1):
         for j in range(degree, level - 1, -1):

@@ -62,7 +62,7 @@ def document(content: bytes) -> Document:
 
 
 def _text(content: bytes) -> Document:
-    import ezdxf
+    from ezdxf.filemanagement import read
 
     text = content.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
     if text.count("\n") > 2 * MAX_TAGS:
@@ -81,7 +81,7 @@ def _text(content: bytes) -> Document:
     with _silent():
         try:
             decoded = content.decode(encoding, errors="replace")
-            return Document(ezdxf.read(io.StringIO(decoded, newline=None)), insunits, ())
+            return Document(read(io.StringIO(decoded, newline=None)), insunits, ())
         except Exception:  # it raises what it meets in a broken file; then it may repair
             pass
         repaired, notes = _read(lambda: _recovered(content))
@@ -178,7 +178,7 @@ def _too_large(what: str, limit: int) -> FormatError:
 
 @contextmanager
 def _silent() -> Generator[None]:
-    """ezdxf says what it meets on standard error; the user gets one line instead."""
+    """What ezdxf meets it says on standard error; the user gets one line instead."""
     logger = logging.getLogger("ezdxf")
     before = logger.level
     logger.setLevel(logging.CRITICAL + 1)

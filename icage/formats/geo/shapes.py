@@ -48,10 +48,10 @@ def add(geometry: shapely.Geometry, names: tuple[str, ...], found: Found) -> Non
     for part in _parts(geometry):
         if len(found.shapes) + len(found.lines) >= MAX_PARTS:
             raise FormatError(f"the file has more than {MAX_PARTS} polygons and lines")
-        kind = part.geom_type
+        kind = type(part).__name__
         if not np.isfinite(shapely.get_coordinates(part)).all():
             raise FormatError(f"a {kind} has coordinates that are not finite")
-        if part.is_empty:
+        if shapely.is_empty(part):
             continue
         if isinstance(part, shapely.Polygon):
             if not part.is_valid:

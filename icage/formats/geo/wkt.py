@@ -1,4 +1,4 @@
-"""WKT: one geometry or several, as databases and shapely write them, EWKT's SRID too. [OGC06-103]"""
+"""WKT: one geometry or several, as databases write them, EWKT's SRID too. [OGC06-103]"""
 
 from __future__ import annotations
 
@@ -39,8 +39,7 @@ def read(content: bytes, reading: Reading) -> Drawing:
         except (shapely.errors.ShapelyError, ValueError, NotImplementedError) as error:
             why = " ".join(str(error).split())[:100]
             raise FormatError(f"{text.strip()[:30]!r}... is no WKT that is read: {why}") from error
-        if geometry is not None:
-            add(geometry, (), found)
+        add(geometry, (), found)
     return drawing_of(found, notes)
 
 

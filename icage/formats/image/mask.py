@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from scipy import ndimage
 
-from icage.arrays import FloatArray
+from icage.arrays import AnyArray, BoolArray, GreyArray
 from icage.errors import FormatError
 from icage.formats.image.pixels import Pixels
 
@@ -42,7 +42,7 @@ class Blob:
         Warnings, a sentence each.
     """
 
-    values: FloatArray
+    values: GreyArray
     level: float
     corner: tuple[int, int]
     hard: bool
@@ -71,7 +71,7 @@ def largest_blob(image: Pixels, threshold: float | None) -> Blob:
     inside = values > level
     if not inside.any() or inside.all():
         raise FormatError("all pixels are on one side of the threshold: nothing stands out")
-    labels, count = ndimage.label(inside)
+    labels = _labelled(inside)
     sizes = np.bincount(labels.ravel())
     sizes[0] = 0
     mine = labels == int(sizes.argmax())
@@ -109,7 +109,7 @@ def _levels(image: Pixels, threshold: float | None) -> tuple[float, float, float
     return (ground + body) / 2.0 if threshold is None else threshold, ground, body
 
 
-def _otsu(values: FloatArray) -> float:
+def _otsu(values: GreyArray) -> float:
     """The level that splits the histogram into the two classes furthest from each other."""
     low, high = float(values.min()), float(values.max())
     if not high > low:
@@ -138,7 +138,7 @@ def _cut_off(mine: np.ndarray) -> list[str]:
 
 
 def _cropped(
-    values: FloatArray, inside: np.ndarray, mine: np.ndarray, level: float,
+    values: GreyArray, inside: np.ndarray, mine: np.ndarray, level: float,
     plain: tuple[float, float], notes: tuple[str, ...],
 ) -> Blob:  # fmt: skip
     rows, columns = np.flatnonzero(mine.any(axis=1)), np.flatnonzero(mine.any(axis=0))
@@ -152,10 +152,10 @@ def _cropped(
     # Blobs that are not the object are ground. Where they touch its corners they meet no edge of
     # it, so the contour between the object and its own neighbours stays as it is.
     part[inside[window] & ~own] = ground
-    padded = np.pad(part, 1, constant_values=np.float32(ground))
+    padded: GreyArray = np.pad(part, 1, constant_values=np.float32(ground))
     body_mask = np.pad(own, 1)
-    holes, count = ndimage.label(~body_mask, structure=np.ones((3, 3)))
-    if count > 1:
+    holes = _labelled(~body_mask, np.ones((3, 3)))
+    if holes.max() > 1:
         sizes = np.bincount(holes.ravel())
         small = sizes <= max(_DUST * float(own.sum()), 4.0)
         small[[0, holes[0, 0]]] = False
@@ -164,9 +164,17 @@ def _cropped(
     return Blob(padded, level, corner, _is_hard(padded, body_mask, plain), notes)
 
 
-def _is_hard(values: FloatArray, mask: np.ndarray, plain: tuple[float, float]) -> bool:
+def _labelled(mask: BoolArray, structure: AnyArray | None = None) -> AnyArray:
+    """The number of the connected set that each pixel belongs to; 0 outside of the mask."""
+    label: Any = ndimage.label
+    return label(mask, structure)[0]
+
+
+def _is_hard(values: GreyArray, mask: np.ndarray, plain: tuple[float, float]) -> bool:
     """Whether hardly a pixel beside the edge is between object and ground."""
-    edge = ndimage.binary_dilation(mask) & ~ndimage.binary_erosion(mask)
+    grown: BoolArray = np.asarray(ndimage.binary_dilation(mask), dtype=bool)
+    shrunk: BoolArray = np.asarray(ndimage.binary_erosion(mask), dtype=bool)
+    edge = grown & ~shrunk
     ground, body = plain
     share = (values[edge] - ground) / (body - ground)
     return float(((share > 0.1) & (share < 0.9)).mean()) < 0.05

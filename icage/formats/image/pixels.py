@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import GreyArray
 from icage.errors import FormatError
 
 MAX_PIXELS: Final = 25_000_000
@@ -35,7 +35,7 @@ class Pixels:
         Warnings, a sentence each.
     """
 
-    values: FloatArray
+    values: GreyArray
     by_alpha: bool
     notes: tuple[str, ...]
 
@@ -84,7 +84,7 @@ def _decoded(image: Any) -> Pixels:
     image = ImageOps.exif_transpose(image)
     mode = image.mode
     if mode in ("RGBA", "LA", "PA", "RGBa", "La") or "transparency" in image.info:
-        alpha = np.asarray(image.convert("RGBA").getchannel("A"), dtype=np.float32) / 255.0
+        alpha = _shares(image.convert("RGBA").getchannel("A"), 255.0)
         clear = float((alpha < 0.5).mean())
         if clear >= _TRANSPARENT and clear < 1.0:
             return Pixels(alpha, True, tuple(notes))
@@ -96,9 +96,14 @@ def _decoded(image: Any) -> Pixels:
         whole = image.convert("RGBA")
         white = Image.new("RGBA", whole.size, (255, 255, 255, 255))
         image = Image.alpha_composite(white, whole).convert("RGB")
-    if mode.startswith("I") or mode == "F":
-        values = np.asarray(image, dtype=np.float32)
-        top = 65535.0 if values.max(initial=0.0) > 255.0 or "16" in mode else 255.0
-        return Pixels(values / np.float32(top), False, tuple(notes))
+    if mode.startswith("I"):  # 16 bits
+        return Pixels(_shares(image, 65535.0), False, tuple(notes))
     grey = image if image.mode == "L" else image.convert("RGB").convert("L")
-    return Pixels(np.asarray(grey, dtype=np.float32) / np.float32(255.0), False, tuple(notes))
+    return Pixels(_shares(grey, 255.0), False, tuple(notes))
+
+
+def _shares(image: Any, top: float) -> GreyArray:
+    """The pixels of one channel in 0 to 1."""
+    values: GreyArray = np.array(image, dtype=np.float32)
+    values /= np.float32(top)
+    return values

@@ -57,7 +57,7 @@ def silhouette(triangles: FloatArray) -> Drawing:
             f"the contour of the mesh has {len(contour)} edges, at most {MAX_CONTOUR} are "
             "allowed: simplify the mesh, or cut it (--section)"
         )
-    check_crossings(contour)
+    check_crossings(list(contour))
     whole = shapely.union_all(shapely.linestrings(contour), grid_size=CRACK / 100.0 * size)
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(whole)))
     outer = without_slits(shapely.union_all(faces), CRACK * size)

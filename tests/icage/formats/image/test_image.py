@@ -41,7 +41,7 @@ SHAPES = {"disc": disc(), "square": turned_square(), "spiky": spiky()}
 
 
 def covered(area: shapely.Polygon, hard: bool = False) -> np.ndarray:
-    """(SIZE, SIZE) shares of pixels that an area covers, exactly; or whether it has their middle."""
+    """(SIZE, SIZE) shares of pixels that an area covers, exactly; or if it has their middle."""
     column, row = np.meshgrid(np.arange(SIZE), np.arange(SIZE))
     shapely.prepare(area)
     if hard:

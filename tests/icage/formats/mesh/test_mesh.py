@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ def prism(area: shapely.Polygon, height: float = 5.0) -> trimesh.Trimesh:
     turned = shapely.orient_polygons(area)
     for ring in (turned.exterior, *turned.interiors):
         oriented = shapely.get_coordinates(ring)
-        for p, q in zip(oriented[:-1], oriented[1:], strict=True):
+        for p, q in pairwise(oriented):
             triangles.append([(*p, 0.0), (*q, 0.0), (*q, height)])
             triangles.append([(*p, 0.0), (*q, height), (*p, height)])
     mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(np.array(triangles)))
