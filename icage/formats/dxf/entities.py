@@ -2,7 +2,7 @@
 
 Arcs and ellipses stay arcs, splines become Bezier pieces; the curves' vectors have three
 coordinates here. Objects with their own system (OCS: arcs, polylines, hatches with an extrusion
-direction) are turned into the world's. [DXF2012, Object coordinate systems]
+direction) are turned into the world's. [DXF2012]
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a number of $INSUNITS means. [DXF2012, HEADER section]"""
+"""What a number of $INSUNITS means. [DXF2012]"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""WKT: one geometry or several, as databases write them, EWKT's SRID too. [OGC06-103]"""
+"""WKT: one geometry or several, as databases write them, EWKT's SRID too. [Herring2011]"""
 
 from __future__ import annotations
 
