@@ -69,10 +69,13 @@ class Enclosed(NamedTuple):
         Every point that cannot get away without crossing a line.
     loose:
         (m, 2) = ends of lines that met no other end and lie outside of the area.
+    nested:
+        What closed lines inside of the area enclose, none of them on its boundary.
     """
 
     area: shapely.Geometry
     loose: FloatArray
+    nested: shapely.Geometry
 
 
 def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
@@ -88,7 +91,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
     paths, loose = joined(paths, gap)
     paths = [path for path in paths if len(path) > 1]
     if not paths:
-        return Enclosed(shapely.Polygon(), loose)
+        return Enclosed(shapely.Polygon(), loose, shapely.Polygon())
     check_crossings(paths)
     grid = _ROUNDING * float(np.abs(np.vstack(paths)).max())
     whole = shapely.union_all([shapely.LineString(path) for path in paths], grid_size=grid)
@@ -100,7 +103,10 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
     elif len(loose):
         shapely.prepare(area)
         loose = loose[~shapely.covers(area, shapely.points(loose))]
-    return Enclosed(area, loose)
+    shapely.prepare(area)
+    rings = shapely.get_parts(faces)
+    inside = rings[shapely.contains_properly(area, rings)]
+    return Enclosed(area, loose, shapely.union_all(inside))
 
 
 def without_slits(area: shapely.Geometry, width: float) -> shapely.Geometry:

@@ -131,12 +131,17 @@ def _of_lines(
     helps = f"--gap G joins ends nearer than G (now {gap:.3g}, in units of the file)"
     if shapely.is_empty(inside.area) and not drawing.shapes:
         raise FormatError(
-            f"the {len(drawing.lines)} lines of the drawing enclose no area: they have "
+            f"the drawing's lines ({len(drawing.lines)}) enclose no area: they have "
             f"{where_loose(inside.loose)}; {helps}"
         )
+    notes: list[str] = []
     if len(inside.loose) and drawing.edges:
-        return areas, [f"lines with {where_loose(inside.loose)}, bound nothing; {helps}"]
-    return areas, []
+        notes.append(f"lines with {where_loose(inside.loose)}, bound nothing; {helps}")
+    nested = sum(size(one) > within / FLATTEN for one in _polygons(inside.nested))
+    if nested:
+        count = "a closed contour" if nested == 1 else f"{nested} closed contours"
+        notes.append(f"{count} inside the outline left out: the outer ring counts")
+    return areas, notes
 
 
 def _without_background(

@@ -1,4 +1,4 @@
-"""GeoJSON: features and geometries, named by ``id`` and by the properties name and id. [Butler2016]"""
+"""GeoJSON: features and geometries, named by their ids and properties. [Butler2016]"""
 
 from __future__ import annotations
 

@@ -187,6 +187,18 @@ def test_an_open_contour_around_a_closed_one_is_told(tmp_path: Path):
     assert any("2 loose ends, the nearest two 1 apart" in note for note in found.notes)
 
 
+def test_contours_inside_the_outline_are_told(tmp_path: Path):
+    document, space = new()
+    space.add_lwpolyline([(0, 0), (10, 0), (10, 10), (0, 10)], close=True)
+    space.add_line((5, -0.0), (5, 10))  # from edge to edge: no contour of its own
+    space.add_circle((2.5, 5), 1)
+    space.add_circle((7.5, 5), 2)
+    space.add_circle((7.5, 5), 1)
+    found = read(tmp_path, document)
+    assert off_by(found, SQUARE) <= 1e-9
+    assert "2 closed contours inside the outline left out: the outer ring counts" in found.notes
+
+
 def test_a_circle_of_lines_shorter_than_the_gap_stays_a_circle(tmp_path: Path):
     u = np.linspace(0.0, 2.0 * np.pi, 3_001)
     x, y = np.round(20 * np.cos(u), 4), np.round(20 * np.sin(u), 4)

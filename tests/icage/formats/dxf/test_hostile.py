@@ -51,7 +51,6 @@ POLYLINE = "0\nPOLYLINE\n8\n0\n66\n1\n70\n1\n"
             "block 'a' inserts itself",
         ),
         (tower(10, 20, line(0, 0, 1, 1)), "more than 50000 curves"),
-        (tower(10, 20, ""), "more than 200000 entities"),
         (tower(1, 2_000, line(0, 0, 1, 1)), "nested more than 50 deep"),
         (
             with_blocks(block("A", box()), insert("A", "70\n32000\n71\n32000\n44\n1.0\n45\n1.0\n")),
