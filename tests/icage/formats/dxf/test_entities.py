@@ -20,7 +20,7 @@ from tests.icage.formats.traced_files import off_by
 FINE = 1e-5
 
 
-def disc(radius: float, cx: float = 0.0, cy: float = 0.0, n: int = 20_000) -> shapely.Polygon:
+def disc(radius: float, cx: float = 0.0, cy: float = 0.0, n: int = 6_000) -> shapely.Polygon:
     u = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
     return shapely.Polygon(np.column_stack([cx + radius * np.cos(u), cy + radius * np.sin(u)]))
 
