@@ -84,7 +84,9 @@ def _decoded(image: Any) -> Pixels:
     image = ImageOps.exif_transpose(image)
     mode = image.mode
     if mode in ("RGBA", "LA", "PA", "RGBa", "La") or "transparency" in image.info:
-        alpha = _shares(image.convert("RGBA").getchannel("A"), 255.0)
+        own = image if "A" in image.getbands() else image.convert("RGBA")
+        alpha = _shares(own.getchannel("A"), 255.0)
+        del own
         clear = float((alpha < 0.5).mean())
         if clear >= _TRANSPARENT and clear < 1.0:
             return Pixels(alpha, True, tuple(notes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from typing import Final
 
 import numpy as np
@@ -21,7 +22,8 @@ _CURVED: Final = frozenset(("curv", "curv2", "surf", "bzp", "bsp", "cstype", "ca
 
 def read(content: bytes, reading: Reading) -> Drawing:
     """The drawing that a mesh in an OBJ file makes. Raises FormatError."""
-    vertices: list[list[str]] = []
+    vertices = array("d")
+    count = 0
     counts: list[int] = []
     numbers: list[int] = []
     text = decode(content, "the OBJ file").replace("\\\r\n", " ").replace("\\\n", " ")
@@ -32,21 +34,24 @@ def read(content: bytes, reading: Reading) -> Drawing:
         if words[0] == "v":
             if len(words) < 4:
                 raise FormatError(f"line {place} of the OBJ file: a vertex needs three numbers")
-            vertices.append(words[1:4])
+            try:
+                vertices.extend(map(float, words[1:4]))
+            except ValueError as error:
+                raise FormatError(
+                    f"line {place} of the OBJ file: a vertex is not three numbers ({error})"
+                ) from error
+            count += 1
         elif words[0] == "f":
             if len(words) < 4:
                 raise FormatError(f"line {place} of the OBJ file: a face needs three vertices")
             counts.append(len(words) - 1)
-            numbers += [_number(word, len(vertices), place) for word in words[1:]]
+            numbers += [_number(word, count, place) for word in words[1:]]
             check_count(len(counts))
         elif words[0] in _CURVED:
             raise FormatError(f"line {place} of the OBJ file: {words[0]!r} is not read: export STL")
-        if len(vertices) > MAX_VERTICES:
+        if count > MAX_VERTICES:
             raise FormatError(f"the mesh has more than {MAX_VERTICES} vertices; simplify it")
-    try:
-        points = np.array(vertices, dtype=float).reshape(-1, 3)
-    except ValueError as error:
-        raise FormatError(f"a vertex of the OBJ file is not three numbers ({error})") from error
+    points = np.array(vertices, dtype=float).reshape(-1, 3)
     faces = fans(np.array(counts, dtype=np.int64), np.array(numbers, dtype=np.int64))
     return seen(corners(points, faces), reading)
 
