@@ -56,7 +56,7 @@ def add_reading(parser: argparse.ArgumentParser, tolerance: bool = True) -> None
         "around it (an upper bound)",
     )  # fmt: skip
     group.add_argument(
-        "--layer", dest="layers", metavar="NAME", action="append",
+        "--layers", metavar="NAME", action="append",
         help="of a DXF file, read this layer; may be given several times (all visible ones)",
     )  # fmt: skip
     group.add_argument(
@@ -98,14 +98,14 @@ def reading_words(reading: Reading) -> list[str]:
 
     >>> from icage.formats.drawings.reading import Reading
     >>> reading_words(Reading(unit="mm", background=False, layers=("a", "b")))
-    ['--unit', 'mm', '--no-background', '--layer', 'a', '--layer', 'b']
+    ['--unit', 'mm', '--no-background', '--layers', 'a', '--layers', 'b']
     """
     words: list[str] = []
     for name, value in reading.given().items():
         if name == "background":
             words += [] if value else ["--no-background"]
         elif name == "layers":
-            words += [word for layer in value for word in ("--layer", layer)]
+            words += [word for layer in value for word in ("--layers", layer)]
         else:
             words += [f"--{name}", f"{value!r}" if isinstance(value, float) else str(value)]
     return words

@@ -22,9 +22,9 @@ _TURNS = 3
 """Columns that are taken up, over their number; more is going round in the circles of rounding."""
 
 _APART = 1e-4
-"""[1] Least over largest singular value of columns all of which may press at once. Of columns that are
-nearly alike, as where an arc goes over into its edge, one is enough, and only taking them up one by
-one finds that."""
+"""[1] Least over largest singular value of columns all of which may press at once. Of columns that
+are nearly alike, as where an arc goes over into its edge, one is enough, and only taking them up one
+by one finds that."""
 
 _TINY = float(np.finfo(np.float64).tiny)
 

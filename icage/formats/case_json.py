@@ -31,6 +31,12 @@ GRASPS: Final = "icage-grasps/1"
 
 FORMATS: Final = (FORMAT, PLAN, GRASPS)
 
+_GEOJSON: Final = (
+    "Feature", "FeatureCollection", "GeometryCollection", "Polygon", "MultiPolygon",
+    "LineString", "MultiLineString", "Point", "MultiPoint",
+)  # fmt: skip
+"""What "type" is in a GeoJSON text."""
+
 MAX_BYTES: Final = 10_000_000
 """Largest case file read."""
 
@@ -143,6 +149,11 @@ def read_json(path: Path) -> object:
 
 def parse_object(case: dict[str, Any], folder: Path, sources: tuple[Path, ...] = ()) -> Case:
     """Everything of a case but the grasp."""
+    if "format" not in case and case.get("type") in _GEOJSON:
+        raise CaseError(
+            f"this is GeoJSON (its type is {describe(case['type'])}): name it *.geojson to have "
+            "its outline"
+        )
     if required(case, "format", "the case") not in FORMATS:
         others = " (or a plan or a list of grasps)"
         raise CaseError(f"format is {describe(case['format'])}; {FORMAT!r} is needed{others}")

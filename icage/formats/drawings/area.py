@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
-from icage.formats.drawings.crossings import check_crossings
+from icage.formats.drawings.crossings import check_tangle
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
+from icage.formats.drawings.ends import joined
 from icage.formats.drawings.fill import filled
 from icage.outline import LARGEST_COORDINATE
 
 MAX_POINTS: Final = 200_000
 """Vertices of the flattened drawing."""
+
+_ROUNDING: Final = 1e-12
+"""[largest coordinate] Lines nearer to each other than this are one where they cross."""
 
 
 def points_of(chain: Ring, within: float) -> FloatArray:
@@ -107,10 +108,26 @@ def _mitres(
     return [shapely.Polygon(corner) for corner in corners]
 
 
-def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geometry:
-    """What lines enclose together: every point that cannot get away without crossing one.
+class Enclosed(NamedTuple):
+    """What lines enclose together.
 
-    Ends of lines nearer to each other than ``gap`` are one point, the middle of them.
+    Attributes
+    ----------
+    area:
+        Every point that cannot get away without crossing a line.
+    loose:
+        (m, 2) = ends of lines that met no other end and lie outside of the area.
+    nested:
+        What closed lines inside of the area enclose, none of them on its boundary.
+    """
+
+    area: shapely.Geometry
+    loose: FloatArray
+    nested: shapely.Geometry
+
+
+def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
+    """What lines enclose; ends of lines nearer to each other than ``gap`` are one point.
 
     Raises
     ------
@@ -119,12 +136,37 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> shapely.Geomet
     """
     paths = [points_of(line.chain, within) for line in lines]
     check_points(sum(len(path) for path in paths))
-    paths = [path for path in _joined(paths, gap) if len(path) > 1]
+    paths, loose = joined(paths, gap)
+    paths = [path for path in paths if len(path) > 1]
     if not paths:
-        return shapely.Polygon()
-    check_crossings(paths)
-    edges = shapely.union_all([shapely.LineString(path) for path in paths])
-    return shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(edges))))
+        return Enclosed(shapely.Polygon(), loose, shapely.Polygon())
+    check_tangle(paths)
+    grid = _ROUNDING * float(np.abs(np.vstack(paths)).max())
+    whole = shapely.union_all([shapely.LineString(path) for path in paths], grid_size=grid)
+    edges = shapely.get_parts(whole)
+    faces, _, dangling, _ = shapely.polygonize_full(edges)
+    area = without_slits(shapely.union_all(shapely.get_parts(faces)), within)
+    if shapely.is_empty(dangling):
+        loose = np.zeros((0, 2))
+    elif len(loose):
+        shapely.prepare(area)
+        loose = loose[~shapely.covers(area, shapely.points(loose))]
+    shapely.prepare(area)
+    rings = shapely.get_parts(faces)
+    inside = rings[shapely.contains_properly(area, rings)]
+    return Enclosed(area, loose, shapely.union_all(inside))
+
+
+def without_slits(area: shapely.Geometry, width: float) -> shapely.Geometry:
+    """An area whose slits narrower than ``width`` are closed; it stays as it is if it has none.
+
+    Edges that were meant to be one and differ by rounding leave slits, deep ones at times.
+    """
+    half = width / 2.0
+    grown = shapely.buffer(area, half, join_style="mitre", mitre_limit=100.0)
+    closed = shapely.buffer(grown, -half, join_style="mitre", mitre_limit=100.0)
+    fewer = shapely.get_num_coordinates(closed) < shapely.get_num_coordinates(area)
+    return shapely.union_all([area, closed]) if fewer else area
 
 
 def check_points(count: int) -> None:
@@ -157,23 +199,3 @@ def _left_by(clips: tuple[tuple[Shape, ...], ...], within: float) -> shapely.Geo
         one = shapely.union_all(areas)
         left = [shapely.intersection(left[0], one) if left else one]
     return left[0]
-
-
-def _joined(paths: list[FloatArray], gap: float) -> list[FloatArray]:
-    """The paths with the ends of each cluster at one point; a closed path stays as it is."""
-    loose = [k for k, path in enumerate(paths) if not (path[0] == path[-1]).all()]
-    if not loose:
-        return paths
-    ends = np.vstack([paths[k][[0, -1]] for k in loose])
-    pairs = KDTree(ends).query_pairs(gap, output_type="ndarray")
-    ones = np.ones(len(pairs))
-    graph = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
-    count, cluster = connected_components(graph, directed=False)
-    middle = np.zeros((count, 2))
-    np.add.at(middle, cluster, ends)
-    middle /= np.bincount(cluster)[:, None]
-    moved = list(paths)
-    for row, k in enumerate(loose):
-        moved[k] = paths[k].copy()
-        moved[k][[0, -1]] = middle[cluster[[2 * row, 2 * row + 1]]]
-    return moved

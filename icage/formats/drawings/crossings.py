@@ -1,4 +1,4 @@
-"""How often edges cross, estimated before anyone pays for it. Our own."""
+"""How often edges cross, before anyone pays minutes and gigabytes for a union. Our own."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ MAX_CROSSINGS: Final = 100_000
 
 MAX_OVERLAPS: Final = 2_000_000
 """Of the edges of all shapes, whose union is cheaper: most of them are inside it."""
+
+MAX_NEAR: Final = 1_500_000
+"""Pairs of edges of lines whose boxes meet."""
+
+MAX_TANGLE: Final = 60_000
+"""Pairs of edges of lines that cross."""
+
+_STEP: Final = 50
 
 _FEW: Final = 500
 """Edges that may all cross one another."""
@@ -49,3 +57,27 @@ def check_crossings(chains: Sequence[FloatArray], most: int = MAX_CROSSINGS) -> 
                 f"the lines of the drawing cross one another about {crossings:.1g} times; "
                 f"at most {most} times is allowed"
             )
+
+
+def check_tangle(paths: Sequence[FloatArray]) -> None:
+    """Refuse polylines, each (k, 2), whose edges cross too often.
+
+    Raises
+    ------
+    FormatError:
+        More than ``MAX_NEAR`` or ``MAX_TANGLE`` pairs.
+    """
+    ends = [np.stack([path[:-1], path[1:]], axis=1) for path in paths]
+    edges = np.asarray(shapely.linestrings(np.concatenate(ends)))
+    tree = shapely.STRtree(edges)
+    near, crossings = 0, 0
+    for start in range(0, len(edges), _STEP):
+        own, others = tree.query(edges[start : start + _STEP])
+        own = own + start
+        later = own < others
+        near += int(later.sum())
+        if near > MAX_NEAR:
+            raise FormatError(f"more than {MAX_NEAR} pairs of lines lie over each other: a tangle")
+        crossings += int(shapely.crosses(edges[own[later]], edges[others[later]]).sum())
+        if crossings > MAX_TANGLE:
+            raise FormatError(f"lines cross more than {MAX_TANGLE} times: a tangle")

@@ -43,7 +43,7 @@ class Curve(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bezier:
-    """A Bezier curve of degree 1, 2 or 3 by its control points (degree + 1, 2)."""
+    """A Bezier curve of any degree by its control points (degree + 1, 2)."""
 
     control: FloatArray
 
@@ -70,9 +70,15 @@ class Bezier:
         for column in np.diff(self.control, axis=0).T.tolist():
             if len(column) == 2:
                 zeros += _zeros(0.0, column[1] - column[0], column[0])
-            else:
+            elif len(column) == 3:
                 a, b, c = column
                 zeros += _zeros(a - 2.0 * b + c, 2.0 * (b - a), a)
+            else:
+                powers = powers_of(np.array(column))[::-1]
+                scale = float(np.abs(powers).max())
+                if scale > 0.0:
+                    roots = np.roots(powers / scale)
+                    zeros += [float(root.real) for root in roots if abs(root.imag) < 1e-6]
         return [zero for zero in zeros if 0.0 < zero < 1.0]
 
 
@@ -140,6 +146,19 @@ class Polyline:
     def turns(self) -> list[float]:
         """The parameters of all points between the ends."""
         return (np.arange(1, len(self.points) - 1) / (len(self.points) - 1)).tolist()
+
+
+def powers_of(bernstein: FloatArray) -> FloatArray:
+    """(n + 1,) = coefficients of 1, t, ..., t^n of a polynomial by its Bernstein coefficients.
+
+    >>> powers_of(np.array([0.0, 0.5, 1.0])).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    n = len(bernstein) - 1
+    differences = [bernstein]
+    while len(differences) <= n:
+        differences.append(np.diff(differences[-1]))
+    return np.array([math.comb(n, k) * row[0] for k, row in enumerate(differences)])
 
 
 def flatten(curve: Curve, within: float) -> FloatArray:

@@ -49,11 +49,11 @@ def filled(rings: Sequence[FloatArray], rule: FillRule) -> shapely.Geometry:
 def _windings(points: FloatArray, closed: Sequence[FloatArray]) -> IntArray:
     """Winding number of the closed rings around each point (k, 2): signed upward crossings."""
     total = np.zeros(len(points), dtype=np.int64)
+    a = np.vstack([ring[:-1] for ring in closed])
+    b = np.vstack([ring[1:] for ring in closed])
     for k, (x, y) in enumerate(points):
-        for ring in closed:
-            a, b = ring[:-1], ring[1:]
-            side = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
-            up = (a[:, 1] <= y) & (b[:, 1] > y) & (side > 0.0)
-            down = (a[:, 1] > y) & (b[:, 1] <= y) & (side < 0.0)
-            total[k] += int(up.sum()) - int(down.sum())
+        side = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
+        up = (a[:, 1] <= y) & (b[:, 1] > y) & (side > 0.0)
+        down = (a[:, 1] > y) & (b[:, 1] <= y) & (side < 0.0)
+        total[k] = int(up.sum()) - int(down.sum())
     return total

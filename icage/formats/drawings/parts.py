@@ -13,6 +13,7 @@ from icage.errors import FormatError
 from icage.formats.drawings.area import area_of, check_points, drawn_area, enclosed
 from icage.formats.drawings.crossings import MAX_OVERLAPS, check_crossings
 from icage.formats.drawings.drawing import Drawing, Line, Shape
+from icage.formats.drawings.ends import where_loose
 from icage.formats.drawings.reading import BY_ID, LARGEST, Reading
 from icage.outline import LARGEST_COORDINATE
 
@@ -21,6 +22,9 @@ FLATTEN: Final = 0.02
 
 _RECTANGLE: Final = 1.0 - 1e-9
 """Share of its bounding box that a rectangle covers."""
+
+MAX_PARTS: Final = 5_000
+"""Separate areas, before those that are near to each other are joined."""
 
 _SHOWN: Final = 6
 """Names or areas told at most."""
@@ -80,7 +84,9 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
         check_points(points)
     areas, said = _without_background(areas, drawing, reading)
     notes += said
-    areas += _of_lines(drawing, reading, within, gap)
+    more, said = _of_lines(drawing, reading, within, gap)
+    areas += more
+    notes += said
     areas = list({shapely.to_wkb(area): area for area in areas}.values())  # drawn twice is once
     _check_work(areas)
     whole = _polygons(shapely.union_all(areas))
@@ -129,19 +135,28 @@ def check_painted(drawing: Drawing, reading: Reading) -> None:
 
 def _of_lines(
     drawing: Drawing, reading: Reading, within: float, gap: float
-) -> list[shapely.Geometry]:
+) -> tuple[list[shapely.Geometry], list[str]]:
     """The areas that lines enclose and, if asked for, that their drawn width covers."""
     if not lines_count(drawing, reading):
-        return []
-    areas = [enclosed(drawing.lines, within, gap)]
+        return [], []
+    inside = enclosed(drawing.lines, within, gap)
+    areas = [inside.area]
     if reading.strokes == "drawn":
-        areas += [drawn_area(line, within) for line in drawing.lines]
-    elif shapely.is_empty(areas[0]) and not drawing.shapes:
+        return areas + [drawn_area(line, within) for line in drawing.lines], []
+    helps = f"--gap G joins ends nearer than G (now {gap:.3g}, in units of the file)"
+    if shapely.is_empty(inside.area) and not drawing.shapes:
         raise FormatError(
-            f"the {len(drawing.lines)} lines of the drawing enclose no area; where their ends do "
-            f"not meet, --gap G joins ends nearer than G ({gap:.3g} units of the file now)"
+            f"the drawing's lines ({len(drawing.lines)}) enclose no area: they have "
+            f"{where_loose(inside.loose)}; {helps}"
         )
-    return areas
+    notes: list[str] = []
+    if len(inside.loose) and drawing.edges:
+        notes.append(f"lines with {where_loose(inside.loose)}, bound nothing; {helps}")
+    nested = sum(size(one) > within / FLATTEN for one in _polygons(inside.nested))
+    if nested:
+        count = "a closed contour" if nested == 1 else f"{nested} closed contours"
+        notes.append(f"{count} inside the outline left out: the outer ring counts")
+    return areas, notes
 
 
 def _without_background(
@@ -195,6 +210,8 @@ def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
     """Parts nearer to each other than the tolerance are one: closed by half of it, then opened."""
     if len(parts) < 2:
         return parts
+    if len(parts) > MAX_PARTS:
+        raise FormatError(f"the drawing has more than {MAX_PARTS} separate filled parts")
     half = tolerance / 2.0
     grown = _polygons(shapely.union_all(shapely.buffer(parts, half, join_style="mitre")))
     if len(grown) == len(parts):

@@ -37,20 +37,71 @@ class Format(NamedTuple):
 
 
 _SVG: Final = Format("an SVG drawing", "icage.formats.svg.reader", 10_000_000)
+_DXF: Final = Format("a DXF drawing", "icage.formats.dxf.reader", 20_000_000)
+_STL: Final = Format("an STL mesh", "icage.formats.mesh.stl", 60_000_000)
+_OBJ: Final = Format("an OBJ mesh", "icage.formats.mesh.obj", 60_000_000)
+_PLY: Final = Format("a PLY mesh", "icage.formats.mesh.ply", 60_000_000)
+_IMAGE: Final = Format("a PNG or JPEG image", "icage.formats.image.reader", 60_000_000)
+_GEOJSON: Final = Format("a GeoJSON file", "icage.formats.geo.geojson", 10_000_000)
+_WKT: Final = Format("a WKT file", "icage.formats.geo.wkt", 10_000_000)
 
 FORMATS: Final[dict[str, Format]] = {
     ".svg": _SVG,
+    ".dxf": _DXF,
+    ".stl": _STL,
+    ".obj": _OBJ,
+    ".ply": _PLY,
+    ".png": _IMAGE,
+    ".jpg": _IMAGE,
+    ".jpeg": _IMAGE,
+    ".geojson": _GEOJSON,
+    ".wkt": _WKT,
 }
 """By the suffix of the file's name."""
 
+_MESHES: Final = "export the part as STL, or a sketch of it as DXF"
+_PICTURES: Final = "save it as PNG"
+
+NOT_READ: Final[dict[str, tuple[str, str]]] = {
+    ".svgz": ("a compressed SVG drawing", "unpack it with gunzip, or save it as plain SVG"),
+    ".dwg": ("a DWG drawing", "save it as DXF"),
+    ".dwf": ("a DWF drawing", "export DXF"),
+    ".pdf": ("a PDF document", "export SVG or DXF"),
+    ".eps": ("an EPS drawing", "export SVG or DXF"),
+    ".ps": ("a PostScript drawing", "export SVG or DXF"),
+    ".ai": ("an Illustrator drawing", "export SVG"),
+    ".cdr": ("a CorelDRAW drawing", "export SVG or DXF"),
+    ".step": ("a STEP model", _MESHES),
+    ".stp": ("a STEP model", _MESHES),
+    ".iges": ("an IGES model", _MESHES),
+    ".igs": ("an IGES model", _MESHES),
+    ".fcstd": ("a FreeCAD document", _MESHES),
+    ".scad": ("an OpenSCAD program", _MESHES),
+    ".3mf": ("a 3MF model", "export STL"),
+    ".amf": ("an AMF model", "export STL"),
+    ".glb": ("a glTF model", "export STL"),
+    ".gltf": ("a glTF model", "export STL"),
+    ".off": ("an OFF mesh", "export STL, OBJ or PLY"),
+    ".heic": ("a HEIC image", _PICTURES),
+    ".webp": ("a WebP image", _PICTURES),
+    ".bmp": ("a BMP image", _PICTURES),
+    ".gif": ("a GIF image", _PICTURES),
+    ".tif": ("a TIFF image", _PICTURES),
+    ".tiff": ("a TIFF image", _PICTURES),
+    ".shp": ("a shapefile", "export GeoJSON"),
+    ".kml": ("a KML file", "export GeoJSON in a projection in metres"),
+    ".gpkg": ("a GeoPackage", "export GeoJSON"),
+}
+"""Formats that are known and not read: what each is called, and the way out."""
+
 
 def is_drawing(path: Path) -> bool:
-    """Whether the name is that of a drawing.
+    """Whether the name is that of a drawing, be it of a format that is refused by its name.
 
-    >>> is_drawing(Path("a.SVG")), is_drawing(Path("a.json"))
-    (True, False)
+    >>> is_drawing(Path("a.SVG")), is_drawing(Path("a.dwg")), is_drawing(Path("a.json"))
+    (True, True, False)
     """
-    return path.suffix.lower() in FORMATS
+    return path.suffix.lower() in FORMATS or path.suffix.lower() in NOT_READ
 
 
 def read_drawing(path: Path, reading: Reading) -> Drawing:
@@ -65,6 +116,9 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
     if form is None:
         if path.is_dir():
             raise FormatError(f"{path} is a folder; a drawing is needed")
+        if path.suffix.lower() in NOT_READ:
+            what, way_out = NOT_READ[path.suffix.lower()]
+            raise FormatError(f"{path} is {what}, which is not read: {way_out}")
         raise FormatError(f"{path} is no drawing; {', '.join(FORMATS)} are read")
     content = read_bytes(path, form.limit, form.name)
     reader: Reader = import_module(form.reader).read

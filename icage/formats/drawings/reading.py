@@ -69,12 +69,14 @@ class Reading:
     layers:
         Layers of a DXF file to read; all that are visible if None.
     section:
-        [unit] Height along ``axis`` at which a mesh is cut; its silhouette if None.
+        Height along ``axis`` at which a mesh is cut, in its own coordinates; its silhouette if
+        None.
     axis:
         Along which a mesh is looked at: "z" if None.
     threshold:
         0 to 1: pixels of an image that are darker (or, with an alpha channel, more opaque) than
-        this are the object; 0.5 if None.
+        this are the object; if None, the middle between the dark and the light pixels' medians
+        (of an alpha channel 0.5).
 
     Raises
     ------

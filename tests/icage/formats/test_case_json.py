@@ -227,7 +227,8 @@ def test_an_outline_from_a_drawing(square: dict[str, Any], tmp_path: Path):
         ({"file": "none.svg", "width": 2}, "none.svg does not exist"),
         ({"file": "", "width": 2}, "outline.file"),
         ({"file": 3, "width": 2}, "outline.file is 3"),
-        ({"file": "box.step", "width": 2}, r"a drawing \(\*.svg"),
+        ({"file": "box.odt", "width": 2}, r"a drawing \(\*.svg"),
+        ({"file": "box.step", "width": 2}, "box.step is a STEP model, which is not read"),
         ({"file": "a\0b.svg", "width": 2}, "outline.file"),
     ],
 )

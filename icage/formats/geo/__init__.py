@@ -1,0 +1,1 @@
+"""Outlines from geometry as text: GeoJSON and WKT."""
