@@ -15,10 +15,10 @@ from experiments.collection.options import SearchOptions
 from experiments.io.one_line import one_line
 from icage.case import Case
 from icage.errors import InputError
-from icage.formats.drawings.read import is_drawing
+from icage.formats.drawings.read import FORMATS, PICTURES, is_drawing
 from icage.formats.load import load_object
 
-DRAWINGS: Final = ".svg"
+_SUFFIXES: Final = ", ".join(f"*{suffix}" for suffix in FORMATS)
 
 CASES: Final = ".json"
 
@@ -99,8 +99,8 @@ def _files_of(place: Path) -> list[tuple[str, Path]]:
         raise InputError(
             f"{str(place)!r} is no file and no folder to look into: {why.lower()}"
         ) from error
-    if not _may_hold_one(place):
-        raise InputError(f"{str(place)!r} is no drawing (*.svg) and no case file (*.json)")
+    if not (is_drawing(place) or place.suffix.lower() == CASES):
+        raise InputError(f"{str(place)!r} is no drawing ({_SUFFIXES}) and no case file (*.json)")
     return [(_in_table(place.name), place)]
 
 
@@ -113,12 +113,17 @@ def _in_folder(folder: Path) -> list[tuple[str, Path]]:
             if not name.startswith(".") and _may_hold_one(path):
                 found.append((_in_table(path.relative_to(folder).as_posix()), path))
     if not found:
-        raise InputError(f"{str(folder)!r} holds no drawing (*.svg) and no case file (*.json)")
+        raise InputError(
+            f"{str(folder)!r} holds no drawing ({_SUFFIXES}) and no case file (*.json); images "
+            "have to be named one by one"
+        )
     return found
 
 
 def _may_hold_one(path: Path) -> bool:
-    return path.suffix.lower() in (DRAWINGS, CASES)
+    """Pictures are often previews of drawings that lie beside them: they count if they are named."""
+    suffix = path.suffix.lower()
+    return suffix == CASES or (suffix in FORMATS and suffix not in PICTURES)
 
 
 def _in_table(name: str) -> str:

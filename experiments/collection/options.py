@@ -51,13 +51,9 @@ class SearchOptions:
         options = asdict(self)
         wanted = options.pop("wanted")
         options.pop("reading")
-        options |= {
-            "width": None,
-            "unit": None,
-            **self.reading.given(),
-            **wanted.pop("limits"),
-            **wanted,
-        }
+        given = self.reading.given()
+        options |= {"width": given.get("width"), "unit": given.get("unit"), "reading": given}
+        options |= {**wanted.pop("limits"), **wanted}
         if options["sigma_most"] == inf:
             options["sigma_most"] = None
         mine = {name: one for name, one in versions().items() if name not in _NO_MATTER}
@@ -86,4 +82,9 @@ def options_of(document: Mapping[str, Any]) -> SearchOptions:
         HandLimits(**limits), tuple(tuple(one) for one in plain.pop("avoid")),
         plain.pop("tolerance"),
     )  # fmt: skip
-    return SearchOptions(wanted, **plain)
+    reading = dict(plain.pop("reading"))
+    if "layers" in reading:
+        reading["layers"] = tuple(reading["layers"])
+    for name in ("width", "unit"):
+        plain.pop(name)  # they stand in the reading, too
+    return SearchOptions(wanted, reading=Reading(**reading), **plain)

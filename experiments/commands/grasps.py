@@ -42,7 +42,7 @@ def add_parser(subparsers: Any) -> None:
         help="the best target grasps of an object, or of many: files and folders",
         description="Search the three-finger immobilizing grasps of an object for those with the "
         "largest\ncages, or list all immobilizing grasps of one given hand (--phi). With --out: "
-        "the best grasps\nof many drawings (*.svg) and case files (*.json), given one by one or by "
+        "the best grasps\nof many drawings and case files (*.json), given one by one or by "
         "their folders, as a table.",
         epilog=PHI_SKETCH,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -23,8 +23,8 @@ _TURNS = 3
 
 _APART = 1e-4
 """[1] Least over largest singular value of columns all of which may press at once. Of columns that
-are nearly alike, as where an arc goes over into its edge, one is enough, and only taking them up one
-by one finds that."""
+are nearly alike, as where an arc goes over into its edge, one is enough; taking them up one by one
+finds that."""
 
 _TINY = float(np.finfo(np.float64).tiny)
 
@@ -58,7 +58,7 @@ def pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]
     best, _, rank, size = np.linalg.lstsq(columns, wanted, rcond=None)
     apart = rank == count and size[-1] > _APART * size[0]
     if apart and best.min() > 0.0:  # all press: most often so, and nothing else to try
-        return np.asarray(best), float(np.linalg.norm(wanted - columns @ best))
+        return np.asarray(best, dtype=np.float64), float(np.linalg.norm(wanted - columns @ best))
     least = _ROUNDING * max(columns.shape) * float(np.abs(columns).sum(axis=0).max())
     pressing: list[int] = []
     for _ in range(_TURNS * count):

@@ -7,7 +7,7 @@ from typing import Final
 from icage.formats.drawings.reading import ReadingOptions
 
 HELP: Final = {
-    "case": "a case file, a shipped object's name, a drawing (*.svg) or an outline without a "
+    "case": "a case file, a shipped object's name, a drawing or an outline without a "
     "grasp, for which the best grasp is searched, or a study's TOML file",
     "grasp": "which of a list of grasps or of a shipped object's grasps, from 1 (default 1)",
     "trials": "how many (default 1000); saltelli rounds its base points up to a power of two",

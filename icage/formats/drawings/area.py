@@ -11,7 +11,7 @@ import shapely
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
-from icage.formats.drawings.crossings import check_tangle
+from icage.formats.drawings.crossings import check_crossings, check_tangle
 from icage.formats.drawings.curves import flatten
 from icage.formats.drawings.drawing import Line, Ring, Shape
 from icage.formats.drawings.ends import joined

@@ -59,6 +59,9 @@ FORMATS: Final[dict[str, Format]] = {
 }
 """By the suffix of the file's name."""
 
+PICTURES: Final = (".png", ".jpg", ".jpeg")
+"""Those that may be there for other reasons: beside drawings, as previews of them."""
+
 _MESHES: Final = "export the part as STL, or a sketch of it as DXF"
 _PICTURES: Final = "save it as PNG"
 

@@ -408,7 +408,7 @@ def test_a_reason_is_the_same_from_inside_the_folder(
         (("a.json", "t.json", "--json", "-"), "--json is for one object; 2 are given"),
         (("a.json", "--out", "{}", "--cases", "c"), "--cases is for one object; --out is for"),
         (("a.json", "gone.svg", "--out", "{}"), "'gone.svg' is no file and no folder"),
-        (("a.json", "notes.txt", "--out", "{}"), "'notes.txt' is no drawing (*.svg) and no case"),
+        (("a.json", "notes.txt", "--out", "{}"), "'notes.txt' is no drawing (*.svg, "),
         (("a.json", "in/a.json", "--out", "{}"), "both 'a.json' in the table"),
         (("a.json", "./a.json", "--out", "{}"), "'a.json' is given twice"),
         ((".", "t.json", "--out", "{}"), "'t.json' is given twice"),
@@ -462,5 +462,5 @@ def test_options_of_one_object(folder: Path, capsys: pytest.CaptureFixture[str])
 def test_a_folder_without_objects(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / ".a.json").write_text("{}")
     line = here(capsys, "grasps", str(tmp_path), "--out", f"{tmp_path}/t.parquet").error_line()
-    assert "holds no drawing (*.svg) and no case file (*.json)" in line
+    assert "holds no drawing (*.svg, *.dxf" in line
     assert [path.name for path in tmp_path.iterdir()] == [".a.json"]
