@@ -121,7 +121,7 @@ def _in_folder(folder: Path) -> list[tuple[str, Path]]:
 
 
 def _may_hold_one(path: Path) -> bool:
-    """Pictures are often previews of drawings that lie beside them: they count if they are named."""
+    """Pictures are often previews of drawings beside them: they count if they are named."""
     suffix = path.suffix.lower()
     return suffix == CASES or (suffix in FORMATS and suffix not in PICTURES)
 
