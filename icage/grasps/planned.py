@@ -16,7 +16,7 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.discs.true_curve import grasp_on_curve
 from icage.errors import GeometryError, GraspError, HandError
-from icage.grasps.findings import ideas, same_idea
+from icage.grasps.findings import distinct, ideas, same_idea
 from icage.grasps.search import Ended
 from icage.grasps.wanted import Aim
 from icage.hand import HandShape
@@ -25,6 +25,12 @@ from icage.planner import plan
 
 _TRIES_AT_A_PLACE = 4
 """Candidates of one idea that are tried before it is given up."""
+
+_OF_AN_IDEA = 4
+"""Grasps of discs of one idea that are planned, ..."""
+
+_APART = 3e-4
+"""[diameter] ... further from each other than this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,19 +90,39 @@ def planned_grasps(
     for group in ideas(contacts, outline.diameter):
         if len(cages) == top:
             break
-        why = ""
-        for row in group[:_TRIES_AT_A_PLACE]:
-            cage = _planned(outline, radius, contacts[row])
-            if isinstance(cage, Cage):
-                # a grasp of discs moves a little when it is solved on the true curve
-                if not any(same_idea(outline, cage.contacts, other.contacts) for other in cages):
-                    cages.append(cage)
-                    alike.append(len(group) - 1)
-                break
-            why = why or cage
-        else:
+        best, why = _best_planned(outline, radius, contacts[group], aim)
+        if best is None:
             failures.append(Failure(contacts[group[0]], why))
+        # a grasp of discs moves a little when it is solved on the true curve
+        elif not any(same_idea(outline, best.contacts, other.contacts) for other in cages):
+            cages.append(best)
+            alike.append(len(group) - 1)
     return _ordered(cages, alike, failures, aim)
+
+
+def _best_planned(
+    outline: Outline, radius: float, alike: FloatArray, aim: Aim
+) -> tuple[Cage | None, str]:
+    """The best cage of grasps (n, 3, 2) of one idea, best first; or why the first is none.
+
+    Scores of discs are those of polygons, and the best are often those that are wrong: where a
+    finger is just about to be free, the true curve asks for another hand. So more than one of an
+    idea is planned.
+    """
+    rows = distinct(alike, _APART * outline.diameter) if radius > 0.0 else np.arange(len(alike))
+    best: Cage | None = None
+    planned, why = 0, ""
+    for row in rows[:_TRIES_AT_A_PLACE]:
+        cage = _planned(outline, radius, alike[row])
+        if isinstance(cage, str):
+            why = why or cage
+            continue
+        if best is None or score(cage, aim) > score(best, aim):
+            best = cage
+        planned += 1
+        if planned == (_OF_AN_IDEA if radius > 0.0 else 1):
+            break
+    return best, why
 
 
 def planned_grasps_of_hand(

@@ -29,8 +29,8 @@ _MOST_CELLS = 450_000
 on two cores. Triples that are not reached are told of with those left out."""
 
 _IMPROVING_CELLS = 120_000
-"""Cells for one round of improvement, by what its seeds have cost. Twice as many find nothing better
-on any outline of the benchmark, with three seeds."""
+"""Cells for one round of improvement, by what its seeds have cost. Twice as many find nothing
+better on any outline of the benchmark, with three seeds."""
 
 _FEWEST = 4
 """Seeds that are improved whatever they cost."""
@@ -107,6 +107,11 @@ class Polish(NamedTuple):
 
 
 _OF_AN_IDEA = 4
+"""Of one idea, so many of the best are compared between finer chords, and so many ..."""
+
+_UNLIKE = 0.01
+"""[diameter] ... further from each other than this: coarse chords are wrong by some 3 % at times,
+and all that are nearer are wrong alike."""
 
 _POLISHES = (
     Polish(8, 30, (Round(8, 0.003, 30), Round(4, 0.0005, 30))),
@@ -241,15 +246,29 @@ class Stages:
             evaluator = self._evaluator(polish.segments)
             fine: list[Findings] = []
             self.finer.insert(0, fine)
-            rows = [k for g in groups(best.contacts, size, polish.ideas) for k in g[:_OF_AN_IDEA]]
-            triples, points = evaluator.on_features(best.of(np.array(rows, np.int64)))
-            stage = f"polishing, {polish.segments} chords"
-            crew.grasps(evaluator, triples, points, stage, fine)
-            again = _best(fine)
-            seeds = [g[0] for g in groups(again.contacts, size, polish.rounds[0].most)]
-            self._improve(
-                evaluator, crew, again.of(np.array(seeds, np.int64)), polish.rounds, stage, fine
+            ideas = groups(best.contacts, size, polish.ideas)
+            first = [group[:_OF_AN_IDEA] for group in ideas]
+            unlike = [
+                group[distinct(best.contacts[group], _UNLIKE * size)][:_OF_AN_IDEA]
+                for group in ideas
+            ]
+            rows = (
+                np.concatenate(first),
+                np.setdiff1d(np.concatenate(unlike), np.concatenate(first)),
             )
+            for kind, some in zip(("the best", "others"), rows, strict=True):
+                if not len(some):
+                    continue
+                again: list[Findings] = []
+                triples, points = evaluator.on_features(best.of(some))
+                stage = f"polishing {kind}, {polish.segments} chords"
+                crew.grasps(evaluator, triples, points, stage, again)
+                fine += again
+                found = _best(again)
+                seeds = [g[0] for g in groups(found.contacts, size, polish.rounds[0].most)]
+                self._improve(
+                    evaluator, crew, found.of(np.array(seeds, np.int64)), polish.rounds, stage, fine
+                )
             best = _best(fine)
 
     def _improve(
