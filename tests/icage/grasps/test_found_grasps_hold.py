@@ -92,7 +92,10 @@ def test_refining_leaves_a_grasp_that_holds_where_it_is(name: str) -> None:
             continue
         solved = refine(outline, HandShape.from_contacts(grasp.contacts), r, grasp.contacts)
         assert solved is not None
-        assert np.abs(solved - grasp.contacts).max() <= 1e-9 * ring.diameter
+        # sigma is flat round some: where it is least is known to the root of rounding only
+        assert np.abs(solved - grasp.contacts).max() <= 1e-7 * ring.diameter
+        sigma, least = (np.hypot(*(c[1] - c[0])) for c in (grasp.contacts, solved))
+        assert abs(sigma - least) <= 1e-13 * ring.diameter
 
 
 def test_no_two_grasps_are_nearly_the_same() -> None:
