@@ -23,7 +23,7 @@ FLATTEN: Final = 0.02
 _RECTANGLE: Final = 1.0 - 1e-9
 """Share of its bounding box that a rectangle covers."""
 
-MAX_PARTS: Final = 5_000
+MAX_PARTS: Final = 3_000
 """Separate areas, before those that are near to each other are joined."""
 
 _SHOWN: Final = 6
@@ -161,10 +161,11 @@ def _of_lines(
     count = sum(size(one) > within / FLATTEN for one in _polygons(nested))
     if count:
         what = "a closed contour" if count == 1 else f"{count} closed contours"
-        way_out = "; if that is a frame, --no-background leaves it out"
+        notes.append(f"{what} inside the outline left out: the outer ring counts")
+    if frames and reading.background is not False:
         notes.append(
-            f"{what} inside the outline left out: the outer ring counts"
-            + (way_out if frames and reading.background is not False else "")
+            "the outline is a rectangle around all other contours; if that is a frame, "
+            "--no-background leaves it out"
         )
     return [area], notes
 
@@ -237,9 +238,10 @@ def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
         members = [parts[k] for k in tree.query(one, predicate="intersects")]
         if len(members) > 1:
             # Mitres keep corners, and give slivers tips; rounds fill corners, and have no tips.
+            rounds = shapely.union_all(shapely.buffer(members, half, quad_segs=4))
             closed = shapely.intersection(
                 shapely.buffer(one, -half, join_style="mitre"),
-                shapely.buffer(shapely.union_all(shapely.buffer(members, half)), -half),
+                shapely.buffer(rounds, -half, quad_segs=4),
             )
             members = _linked(_of_members([closed, *members], members), tolerance)
         joined += members
