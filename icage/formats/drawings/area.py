@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from icage.arrays import FloatArray
 from icage.errors import FormatError
@@ -117,13 +118,19 @@ class Enclosed(NamedTuple):
         Every point that cannot get away without crossing a line.
     loose:
         (m, 2) = ends of lines that met no other end and lie outside of the area.
-    nested:
-        What closed lines inside of the area enclose, none of them on its boundary.
+    faces:
+        (k) polygons between lines: the area in its smallest pieces.
     """
 
     area: shapely.Geometry
     loose: FloatArray
-    nested: shapely.Geometry
+    faces: NDArray[np.object_]
+
+    def nested(self, area: shapely.Geometry | None = None) -> shapely.Geometry:
+        """What closed lines inside of an area (the whole) enclose, none of them on its boundary."""
+        around = self.area if area is None else area
+        shapely.prepare(around)
+        return shapely.union_all(self.faces[shapely.contains_properly(around, self.faces)])
 
 
 def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
@@ -139,7 +146,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
     paths, loose = joined(paths, gap)
     paths = [path for path in paths if len(path) > 1]
     if not paths:
-        return Enclosed(shapely.Polygon(), loose, shapely.Polygon())
+        return Enclosed(shapely.Polygon(), loose, shapely.get_parts(shapely.MultiPolygon()))
     check_tangle(paths)
     grid = _ROUNDING * float(np.abs(np.vstack(paths)).max())
     whole = shapely.union_all([shapely.LineString(path) for path in paths], grid_size=grid)
@@ -151,10 +158,7 @@ def enclosed(lines: Sequence[Line], within: float, gap: float) -> Enclosed:
     elif len(loose):
         shapely.prepare(area)
         loose = loose[~shapely.covers(area, shapely.points(loose))]
-    shapely.prepare(area)
-    rings = shapely.get_parts(faces)
-    inside = rings[shapely.contains_properly(area, rings)]
-    return Enclosed(area, loose, shapely.union_all(inside))
+    return Enclosed(area, loose, shapely.get_parts(faces))
 
 
 def without_slits(area: shapely.Geometry, width: float) -> shapely.Geometry:

@@ -23,7 +23,7 @@ FLATTEN: Final = 0.02
 _RECTANGLE: Final = 1.0 - 1e-9
 """Share of its bounding box that a rectangle covers."""
 
-MAX_PARTS: Final = 5_000
+MAX_PARTS: Final = 3_000
 """Separate areas, before those that are near to each other are joined."""
 
 _SHOWN: Final = 6
@@ -82,10 +82,9 @@ def object_part(drawing: Drawing, reading: Reading, tolerance: float, gap: float
         areas.append(area_of(shape, within))
         points += int(shapely.get_num_coordinates(areas[-1]))
         check_points(points)
-    areas, said = _without_background(areas, drawing, reading)
-    notes += said
     more, said = _of_lines(drawing, reading, within, gap)
-    areas += more
+    notes += said
+    areas, said = _without_background(areas + more, drawing, reading)
     notes += said
     areas = list({shapely.to_wkb(area): area for area in areas}.values())  # drawn twice is once
     _check_work(areas)
@@ -140,9 +139,8 @@ def _of_lines(
     if not lines_count(drawing, reading):
         return [], []
     inside = enclosed(drawing.lines, within, gap)
-    areas = [inside.area]
     if reading.strokes == "drawn":
-        return areas + [drawn_area(line, within) for line in drawing.lines], []
+        return [inside.area, *(drawn_area(line, within) for line in drawing.lines)], []
     helps = f"--gap G joins ends nearer than G (now {gap:.3g}, in units of the file)"
     if shapely.is_empty(inside.area) and not drawing.shapes:
         raise FormatError(
@@ -152,11 +150,24 @@ def _of_lines(
     notes: list[str] = []
     if len(inside.loose) and drawing.edges:
         notes.append(f"lines with {where_loose(inside.loose)}, bound nothing; {helps}")
-    nested = sum(size(one) > within / FLATTEN for one in _polygons(inside.nested))
-    if nested:
-        count = "a closed contour" if nested == 1 else f"{nested} closed contours"
-        notes.append(f"{count} inside the outline left out: the outer ring counts")
-    return areas, notes
+    area, nested, frames = inside.area, inside.nested(), 0
+    while not shapely.is_empty(nested) and _fills_frame(area, drawing.frame):
+        frames += 1
+        if reading.background is not False:
+            break
+        area, nested = nested, inside.nested(nested)
+    if frames and reading.background is False:
+        notes.append("a frame around all other contours was left out")
+    count = sum(size(one) > within / FLATTEN for one in _polygons(nested))
+    if count:
+        what = "a closed contour" if count == 1 else f"{count} closed contours"
+        notes.append(f"{what} inside the outline left out: the outer ring counts")
+    if frames and reading.background is not False:
+        notes.append(
+            "the outline is a rectangle around all other contours; if that is a frame, "
+            "--no-background leaves it out"
+        )
+    return [area], notes
 
 
 def _without_background(
@@ -185,6 +196,13 @@ def _without_background(
             break
         del kept[largest]
         notes.append("a background that covers all other shapes was left out")
+    if len(kept) == 1 and drawing.lines and not lines_count(drawing, reading):
+        lines = corners_of(drawing.lines)
+        if _fills_frame(kept[0], drawing.frame) and shapely.covers(kept[0], lines):
+            notes.append(
+                "the shape around all lines is the outline, and the lines are left out; if it is "
+                "the background: --strokes outline --no-background"
+            )
     return kept, notes
 
 
@@ -214,18 +232,43 @@ def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
         raise FormatError(f"the drawing has more than {MAX_PARTS} separate filled parts")
     half = tolerance / 2.0
     grown = _polygons(shapely.union_all(shapely.buffer(parts, half, join_style="mitre")))
-    if len(grown) == len(parts):
-        return parts
     tree = shapely.STRtree(parts)
     joined: list[shapely.Polygon] = []
     for one in grown:
         members = [parts[k] for k in tree.query(one, predicate="intersects")]
-        if len(members) == 1:
-            joined += members
-        else:
-            closed = shapely.buffer(one, -half, join_style="mitre")
-            joined += _polygons(shapely.union_all([closed, *members]))
+        if len(members) > 1:
+            # Mitres keep corners, and give slivers tips; rounds fill corners, and have no tips.
+            rounds = shapely.union_all(shapely.buffer(members, half, quad_segs=4))
+            closed = shapely.intersection(
+                shapely.buffer(one, -half, join_style="mitre"),
+                shapely.buffer(rounds, -half, quad_segs=4),
+            )
+            members = _linked(_of_members([closed, *members], members), tolerance)
+        joined += members
     return joined
+
+
+def _of_members(
+    areas: Sequence[shapely.Geometry], members: Sequence[shapely.Polygon]
+) -> list[shapely.Polygon]:
+    """The parts of a union that hold a member: closing may leave crumbs that only touch one."""
+    inside = [member.representative_point() for member in members]
+    parts = _polygons(shapely.union_all(areas))
+    holds = np.unique(shapely.STRtree(parts).query(inside, predicate="intersects")[1])
+    return [parts[k] for k in holds.tolist()]
+
+
+def _linked(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Polygon]:
+    """Parts that still are several, since they are near at a corner alone, get a link there."""
+    if len(parts) < 2:
+        return parts
+    first, second = shapely.STRtree(parts).query(parts, predicate="dwithin", distance=tolerance)
+    links = [
+        shapely.buffer(shapely.shortest_line(parts[i], parts[j]), tolerance / 4.0, quad_segs=2)
+        for i, j in zip(first.tolist(), second.tolist(), strict=True)
+        if i < j
+    ]
+    return _polygons(shapely.union_all([*parts, *links]))
 
 
 def _picked(

@@ -123,9 +123,19 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
             what, way_out = NOT_READ[path.suffix.lower()]
             raise FormatError(f"{path} is {what}, which is not read: {way_out}")
         raise FormatError(f"{path} is no drawing; {', '.join(FORMATS)} are read")
+    if _is_no_file(path):
+        raise FormatError(f"{path} is a pipe or a device; {form.name} in a file is needed")
     content = read_bytes(path, form.limit, form.name)
     reader: Reader = import_module(form.reader).read
     return reader(content, reading)
+
+
+def _is_no_file(path: Path) -> bool:
+    """Whether a path is a pipe or a device: a pipe that nobody writes to would be waited for."""
+    try:
+        return path.exists() and not path.is_file() and not path.is_dir()
+    except (OSError, ValueError):  # no path at all, which is told when it is read
+        return False
 
 
 def trace_file(path: Path, reading: Reading) -> Traced:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Final, Literal, TypeAlias, TypedDict
+from typing import Any, Final, Literal, TypeAlias, TypedDict, cast
 
 from icage.checks import a_number, one_of
 from icage.errors import FormatError, InputError
@@ -111,6 +111,10 @@ class Reading:
                 one_of(getattr(self, name), allowed, name)
         if self.threshold is not None and not 0.0 < a_number(self.threshold, "threshold") < 1.0:
             raise InputError(f"threshold is {self.threshold:g}; between 0 and 1 is needed")
+        if self.layers is not None and not _is_names(self.layers):
+            raise InputError(f"layers is {self.layers!r:.60}; a tuple of names is needed")
+        if self.background is not None and not _is_flag(self.background):
+            raise InputError(f"background is {self.background!r:.60}; true or false is needed")
         if self.pick is not None:
             object.__setattr__(self, "pick", _picked(self.pick))
 
@@ -122,6 +126,17 @@ class Reading:
         """
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
+
+
+def _is_flag(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+def _is_names(value: object) -> bool:
+    """Whether this is a tuple of words."""
+    if not isinstance(value, tuple):
+        return False
+    return all(isinstance(name, str) for name in cast("tuple[object, ...]", value))
 
 
 def _picked(pick: object) -> int | str:

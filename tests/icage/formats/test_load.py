@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 
 import icage
 from icage.case import Case
-from icage.errors import CaseError, InputError
+from icage.errors import CaseError, FormatError, InputError
 from icage.formats.case_json import case_document, grasp_name, read_case
 from icage.formats.json_out import write_json
 from icage.outline import Outline
@@ -186,3 +187,20 @@ def test_a_misspelt_grasp_is_no_missing_one(tmp_path: Path):
 
 def test_a_long_name_keeps_its_number():
     assert grasp_name("x" * 100, 12) == "x" * 97 + "/12"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+@pytest.mark.parametrize("suffix", [".svg", ".dxf", ".stl", ".png", ".geojson"])
+def test_a_pipe_that_nobody_writes_to_is_refused_at_once(tmp_path: Path, suffix: str):
+    pipe = tmp_path / f"a{suffix}"
+    os.mkfifo(pipe)
+    with pytest.raises(FormatError, match="is a pipe or a device"):
+        icage.load(pipe, width=1.0, unit="mm")
+
+
+@pytest.mark.parametrize(
+    "option", [{"layers": 5}, {"layers": [1]}, {"layers": "CUT"}, {"background": "no"}]
+)
+def test_options_of_a_wrong_type_are_refused(svg: Path, option: dict[str, Any]):
+    with pytest.raises(InputError, match=f"{next(iter(option))} is"):
+        icage.load(svg, width=60.0, unit="mm", **option)

@@ -78,6 +78,31 @@ def test_three_parts_in_a_chain_are_one_and_a_far_one_is_not():
         area(Drawing((*chain, box(9, 0, 1, 1))))
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.004])
+def test_parts_that_are_near_at_a_corner_alone_are_one(gap: float):
+    two = Drawing((box(0, 0, 5, 5), box(5 + gap, 5 + gap, 5 - gap, 5 - gap)))
+    found = traced(two, Reading(width=10.0))
+    assert found.outline.area == pytest.approx(50.0, rel=1e-3)
+    assert found.distance <= found.tolerance
+    tip = Shape(((Polyline(np.array([[5 + gap, 2], [10, 0], [10, 4], [5 + gap, 2]])),),))
+    assert area(Drawing((box(0, 0, 5, 5), tip))) == pytest.approx(35.0, rel=1e-3)
+    board = [box(x, y, 1, 1) for x in range(10) for y in range(10) if (x + y) % 2 == 0]
+    assert area(Drawing(tuple(board))) > 50.0  # squares that touch around holes
+    if gap:
+        with pytest.raises(FormatError, match="2 separate"):
+            area(two, tolerance=gap / 2)
+
+
+def test_slivers_that_touch_the_object_do_not_grow_into_parts_of_their_own():
+    thin = Shape(((Polyline(np.array([[0, 0], [10, 0], [10, 1e-7], [0, 0]])),),))
+    far = traced(Drawing((box(0, 0, 10, 5), thin, box(0, -1e-9, 10, 0))), Reading(width=10.0))
+    assert far.outline.area == pytest.approx(50.0, rel=1e-3)
+    below = Shape(((Polyline(np.array([[0, 0], [10, -0.0005], [10, -0.0006], [0, 0]])),),))
+    found = traced(Drawing((box(0, 0, 10, 5), below)), Reading(width=10.0))
+    assert found.outline.area == pytest.approx(50.0, rel=1e-3)
+    assert found.distance <= found.tolerance
+
+
 def test_a_background_is_said_and_can_be_left_out():
     page = Drawing((box(0, 0, 20, 20), disc(10, 10, 5)), frame=(0, 0, 20, 20))
     assert "covers all others" in notes(page)
@@ -89,6 +114,34 @@ def test_a_background_is_said_and_can_be_left_out():
     details = Drawing((disc(10, 10, 10), box(5, 5, 10, 10)), frame=(-9, -9, 40, 40))
     assert "covers" not in notes(details)
     assert "covers" not in notes(Drawing((box(0, 0, 2, 1), box(0, 0, 2, 1))))
+
+
+def test_a_background_around_lines_is_said_and_can_be_left_out():
+    page, path = box(0, 0, 20, 20), lines([[5, 5], [15, 5], [15, 10], [5, 5]])
+    both = Drawing((page,), path)
+    assert "the lines are left out; if it is the background" in notes(both)
+    assert "covers all others" in notes(both, strokes="outline")
+    assert area(both, strokes="outline", background=False) == pytest.approx(25.0)
+    assert "lines" not in notes(Drawing((page,), lines([[5, 5], [25, 5]])))
+    assert "lines" not in notes(Drawing((disc(10, 10, 9),), path))
+
+
+def test_frames_of_lines_are_said_and_can_be_left_out():
+    def ring(x: float, y: float, w: float, h: float) -> list[list[float]]:
+        return [[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]]
+
+    sheet = [ring(0, 0, 50, 40), ring(1, 1, 48, 38), ring(30, 1, 19, 5)]  # with a title block
+    part = [[[10, 10], [20, 10], [10, 20], [10, 10]], ring(12, 12, 1, 1)]
+    drawing = Drawing(lines=lines(*sheet, *part), edges=True)
+    assert "if that is a frame, --no-background leaves it out" in notes(drawing)
+    assert area(drawing, background=False) == pytest.approx(50.0)
+    said = notes(drawing, background=False)
+    assert "a frame around all other contours was left out" in said
+    assert "a closed contour inside the outline left out: the outer ring counts" in said
+    assert "frame" not in notes(Drawing(lines=lines(*part), edges=True))
+    filled = Drawing(TWO.shapes[:1], lines(ring(-5, -5, 20, 20)))
+    assert "covers all others" in notes(filled, strokes="outline")
+    assert area(filled, strokes="outline", background=False) == pytest.approx(100.0)
 
 
 def test_holes_are_left_out_and_said():
