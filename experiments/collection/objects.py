@@ -15,7 +15,7 @@ from experiments.collection.options import SearchOptions
 from experiments.io.one_line import one_line
 from icage.case import Case
 from icage.errors import InputError
-from icage.formats.drawings.read import FORMATS, PICTURES, is_drawing
+from icage.formats.drawings.read import FORMATS, PICTURES, fitting, is_drawing
 from icage.formats.load import load_object
 
 _SUFFIXES: Final = ", ".join(f"*{suffix}" for suffix in FORMATS)
@@ -156,7 +156,7 @@ def _read(path: Path, options: SearchOptions) -> Case:
     if path.exists() and not path.is_file():
         raise InputError("this is no regular file")
     if is_drawing(path):
-        case = load_object(path, **options.reading.given())
+        case = load_object(path, **fitting(path, options.reading).given())
     else:
         case = load_object(path)
     if options.finger_radius is not None:

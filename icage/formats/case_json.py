@@ -206,10 +206,15 @@ def _drawing_of(
     if not is_drawing(Path(file)):
         kinds = ", *".join(FORMATS_OF_DRAWINGS)
         raise CaseError(f"outline.file is {describe(file)}; a drawing (*{kinds}) is needed")
+    if "unit" in data:
+        raise CaseError(
+            f"outline.unit is {describe(data['unit'])}; the unit of a case is its own key, and "
+            "its outline has the same"
+        )
     options: dict[str, Any] = {
         key: a_number(data[key], f"outline.{key}") if key in _NUMBERS else data[key]
         for key in ReadingOptions.__annotations__
-        if key in data and key != "unit"  # the case's unit is the outline's
+        if key in data
     }
     if isinstance(options.get("layers"), list):
         options["layers"] = tuple(options["layers"])

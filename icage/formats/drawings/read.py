@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from icage.errors import FormatError, InputError
-from icage.formats.drawings.reading import Reading
+from icage.formats.drawings.reading import Reading, option_of
 from icage.formats.files import read_bytes
 
 if TYPE_CHECKING:
@@ -29,19 +30,29 @@ class Format(NamedTuple):
         Module with ``read(content, reading)``, imported when it is needed.
     limit:
         [bytes] Largest file.
+    options:
+        Fields of ``Reading`` that say something here and not everywhere.
     """
 
     name: str
     reader: str
     limit: int
+    options: tuple[str, ...] = ()
 
+
+_OF_MESHES: Final = ("section", "axis")
+
+_SPECIAL: Final = ("layers", *_OF_MESHES, "threshold")
+"""Options of some formats."""
 
 _SVG: Final = Format("an SVG drawing", "icage.formats.svg.reader", 10_000_000)
-_DXF: Final = Format("a DXF drawing", "icage.formats.dxf.reader", 20_000_000)
-_STL: Final = Format("an STL mesh", "icage.formats.mesh.stl", 60_000_000)
-_OBJ: Final = Format("an OBJ mesh", "icage.formats.mesh.obj", 60_000_000)
-_PLY: Final = Format("a PLY mesh", "icage.formats.mesh.ply", 60_000_000)
-_IMAGE: Final = Format("a PNG or JPEG image", "icage.formats.image.reader", 60_000_000)
+_DXF: Final = Format("a DXF drawing", "icage.formats.dxf.reader", 20_000_000, ("layers",))
+_STL: Final = Format("an STL mesh", "icage.formats.mesh.stl", 60_000_000, _OF_MESHES)
+_OBJ: Final = Format("an OBJ mesh", "icage.formats.mesh.obj", 60_000_000, _OF_MESHES)
+_PLY: Final = Format("a PLY mesh", "icage.formats.mesh.ply", 60_000_000, _OF_MESHES)
+_IMAGE: Final = Format(
+    "a PNG or JPEG image", "icage.formats.image.reader", 60_000_000, ("threshold",)
+)
 _GEOJSON: Final = Format("a GeoJSON file", "icage.formats.geo.geojson", 10_000_000)
 _WKT: Final = Format("a WKT file", "icage.formats.geo.wkt", 10_000_000)
 
@@ -125,9 +136,34 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         raise FormatError(f"{path} is no drawing; {', '.join(FORMATS)} are read")
     if _is_no_file(path):
         raise FormatError(f"{path} is a pipe or a device; {form.name} in a file is needed")
+    _refuse_others(reading, form)
     content = read_bytes(path, form.limit, form.name)
     reader: Reader = import_module(form.reader).read
     return reader(content, reading)
+
+
+def fitting(path: Path, reading: Reading) -> Reading:
+    """The options that say something about this file: for folders, whose files are of many kinds.
+
+    >>> fitting(Path("a.svg"), Reading(unit="mm", layers=("CUT",))).given()
+    {'unit': 'mm'}
+    """
+    form = FORMATS.get(path.suffix.lower())
+    if form is None:
+        return reading
+    others = {name: None for name in _SPECIAL if name not in form.options}
+    return replace(reading, **others)
+
+
+def _refuse_others(reading: Reading, form: Format) -> None:
+    for name in reading.given():
+        if name in _SPECIAL and name not in form.options:
+            kinds = " or ".join(one.name for one in _kinds_with(name))
+            raise FormatError(f"{option_of(name)} is for {kinds}, and this is {form.name}")
+
+
+def _kinds_with(option: str) -> list[Format]:
+    return [form for form in dict.fromkeys(FORMATS.values()) if option in form.options]
 
 
 def _is_no_file(path: Path) -> bool:

@@ -136,7 +136,7 @@ def _sized(drawing: Drawing, reading: Reading) -> tuple[Unit, float, str, tuple[
         if reading.unit is None or drawing.sure:
             raise FormatError(
                 "the drawing states no size in mm, cm or in; a width is needed"
-                + ("" if drawing.sure else " (--width W --unit U), or the unit (--unit U)")
+                + (" (--width W)" if drawing.sure else " (--width W --unit U), or --unit U")
             )
         return unit, 1.0, f"from --unit {unit}", ()
     if not drawing.sure and reading.unit is not None:

@@ -127,3 +127,29 @@ def test_a_case_file_may_say_how_its_drawing_is_read(tmp_path: Path):
     path.write_text(json.dumps(case))
     with pytest.raises(icage.InputError, match="pick is 7"):
         icage.load(path)
+
+
+@pytest.mark.parametrize(
+    ("options", "kinds"),
+    [
+        (("--layers", "CUT"), "--layers is for a DXF drawing, and this is an SVG drawing"),
+        (("--section", "2"), "--section is for an STL mesh or an OBJ mesh or a PLY mesh"),
+        (("--threshold", "0.5"), "--threshold is for a PNG or JPEG image"),
+    ],
+)
+def test_options_of_another_format_are_refused(
+    options: tuple[str, ...], kinds: str, tmp_path: Path, capsys: Any
+):
+    line = here(capsys, "outline", drawn(tmp_path, ROUND), *options).error_line()
+    assert kinds in line
+
+
+def test_a_unit_inside_the_outline_of_a_case_is_refused(tmp_path: Path):
+    drawn(tmp_path, ROUND)
+    case = {
+        "format": "icage-case/1", "name": "a", "outline": {"file": "a.svg", "unit": "mm"},
+    }  # fmt: skip
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case))
+    with pytest.raises(icage.InputError, match="the unit of a case is its own key"):
+        icage.load(path)
