@@ -84,5 +84,5 @@ NEAR_TURN: Final = 0.02
 """[rad] ... and the hand is turned by at most this. [docs/formats.md, Tolerances]"""
 
 JAM_THICK: Final = 1e-11
-"""[diameter] A finger this close to an edge or a vertex may push there: jams are too many, never too
-few; above the rounding of a corner, far below the accuracy of any level that is promised."""
+"""[diameter] A finger this close to an edge or a vertex may push there: jams are too many, never
+too few; above the rounding of a corner, far below the accuracy of any level that is promised."""

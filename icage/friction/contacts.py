@@ -4,12 +4,13 @@ A finger on an edge pushes along the inward normal, up to atan(mu) to either sid
 vertex any normal between those of its two edges may act; in a concave one both edges push at once,
 and their forces add up. Both give all directions between the two outermost ones, except that a sum
 of forces has no gap: where the two cones of a concave vertex reach round more than half of all
-directions, they give every force. [docs/theory.md, Sec. 5]
+directions, they give every force. [docs/theory.md, Sec. 10]
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -90,5 +91,4 @@ def _vertex_cone(before: float, after: float, half: float) -> tuple[float, float
 def _split(right: float, left: float) -> list[tuple[float, float]]:
     """The cone in parts that are none too wide."""
     parts = max(1, math.ceil((left - right) / _WIDEST))
-    edges = np.linspace(right, left, parts + 1).tolist()
-    return list(zip(edges[:-1], edges[1:], strict=True))
+    return list(pairwise(np.linspace(right, left, parts + 1).tolist()))

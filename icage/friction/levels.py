@@ -1,9 +1,9 @@
-"""sigma_first for a coefficient of friction: below it, closing ends within a tolerance of the target.
+"""sigma_first with friction: below it, closing ends within a tolerance of the target.
 
 Below the frictionless sigma_first the cells that the search has reached are the target's component,
 and it holds no other minimum: whatever hand lies in them joins the target at its own sigma. So the
 first jam that matters is the one of least sigma in these cells, outside the tolerance. Our own.
-[docs/theory.md, Sec. 5]
+[docs/theory.md, Sec. 10]
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ def _limited(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
     least = least_jam(
         free_space.pieces, free_space.z, np.ascontiguousarray(found.cells[:inside]),
         np.ascontiguousarray(found.node_level[:inside]), contacts_of(free_space.pieces, level.mu),
-        _subsets(len(free_space.z)), _near(cage, work, level.tolerance),
+        touching_subsets(len(free_space.z)), _near(cage, work, level.tolerance),
         first if level.jam is None else level.jam.sigma, JAM_THICK * size,
     )  # fmt: skip
     if not np.isfinite(least.sigma):
@@ -179,7 +179,7 @@ def _limited(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
     return replace(level, sigma_first=least.sigma, jam=_jam(cage, work, least))
 
 
-def _subsets(fingers: int) -> BoolArray:
+def touching_subsets(fingers: int) -> BoolArray:
     """(k, fingers) every way in which two fingers or more touch, the fewest first."""
     rows = [row for row in product((True, False), repeat=fingers) if sum(row) >= 2]
     return np.array(sorted(rows, key=sum), dtype=np.bool_)

@@ -5,7 +5,7 @@ sum conj(p_k) f_k = conj(w) sum conj(z_k) f_k is real and negative. So -w has to
 
     G = {sum conj(z_k) f_k : f_k in cone k, sum f_k = 0},
 
-which is a convex cone of the plane, whatever d is. Our own. [docs/theory.md, Sec. 5]
+which is a convex cone of the plane, whatever d is. Our own. [docs/theory.md, Sec. 10]
 """
 
 # pyright: basic

@@ -3,7 +3,7 @@
 The hands outside the tolerance are no convex set, but a union of such: those turned too far one
 way or the other (two half planes of w, exactly), and those whose middle is out of a disc. The
 outside of a disc is covered by half planes that cut a little into it, and those that matter are
-split until it is no more than rounding. [docs/theory.md, Sec. 5]
+split until it is no more than rounding. [docs/theory.md, Sec. 10]
 """
 
 # pyright: basic

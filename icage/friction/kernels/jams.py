@@ -3,7 +3,7 @@
 A choice puts some fingers on features (an edge or a vertex of their piece) and leaves the others
 anywhere in their pieces. Its hands are a convex polygon (two contacts), a segment or a point
 (three): the fingers on their features, the free ones in their pieces, and w in the sector in which
-forces balance. [docs/theory.md, Sec. 5]
+forces balance. [docs/theory.md, Sec. 10]
 """
 
 # pyright: basic
@@ -103,9 +103,7 @@ def _sizes_fit(z, finger, chosen, count, contacts, least, most, thick):
     """Whether every two features are neither too near nor too far apart for sigma in a range."""
     for a in range(count):
         for b in range(a + 1, count):
-            side = np.hypot(
-                z[finger[b], 0] - z[finger[a], 0], z[finger[b], 1] - z[finger[a], 1]
-            )
+            side = np.hypot(z[finger[b], 0] - z[finger[a], 0], z[finger[b], 1] - z[finger[a], 1])
             p, q = contacts.place[chosen[a]], contacts.place[chosen[b]]
             x = q[0] + 0.5 * q[2] - p[0] - 0.5 * p[2]
             y = q[1] + 0.5 * q[3] - p[1] - 0.5 * p[3]

@@ -1,4 +1,4 @@
-"""Convex polygons of configurations: flat pieces of R^4, as their corners (n, 4) = d_x, d_y, w_x, w_y.
+"""Convex polygons of configurations, flat in R^4: corners (n, 4) = d_x, d_y, w_x, w_y.
 
 A half space is a row of five numbers: it holds q where row[:4] . q + row[4] >= 0.
 """
@@ -52,7 +52,7 @@ def clip(corners, n, row, kept):
 
 @compiled
 def least(corners, n, point):
-    """The least sigma = |w| on a polygon that holds no pinched hand; its place goes to ``point``."""
+    """The least sigma = |w| on a polygon without a pinched hand; its place goes to ``point``."""
     best = np.inf
     for a in range(n):
         b = a + 1 if a + 1 < n else 0
