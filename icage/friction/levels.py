@@ -176,7 +176,7 @@ def _limited(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
     )  # fmt: skip
     if not np.isfinite(least.sigma):
         return level
-    return replace(level, sigma_first=least.sigma, jam=_jam(cage, work, least))
+    return replace(level, sigma_first=float(least.sigma), jam=_jam(cage, work, least))
 
 
 def touching_subsets(fingers: int) -> BoolArray:

@@ -2,8 +2,8 @@
 
 Nothing is shared with icage.friction. Hands with two contacts come from pairs of sampled points;
 hands with three from a sampled point and two edges, which leave one hand for each. Balance is the
-basic solutions of a small linear program, all of them. Whether a hand joins the target is asked
-of the query. What is found are jams, so their least sigma is an upper bound of the true one.
+basic solutions of a small linear program, all of them. What is found are jams, so their least
+sigma is an upper bound of the true one.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ import numpy as np
 import shapely
 from scipy.optimize import linprog
 
-from icage.cage import Cage
-from icage.cells.membership import TARGET, query
 from tests.oracles.geometry import Floats, Ring
 
 SLACK = 1e-9
@@ -199,25 +197,6 @@ def _left_over(contacts: Floats, diameter: float, cones: list[list[float]]) -> f
         A_eq=np.append(wrench[3], 0.0)[None], b_eq=[1.0], bounds=(0.0, None),
     )  # fmt: skip
     return float(answer.fun) if answer.status == 0 else math.inf
-
-
-def least_in_the_basin(
-    cage: Cage, hands: Floats, position: float, angle: float
-) -> tuple[float, Floats | None]:
-    """Least sigma of the hands (k, 3, 2) that are far from the target and in its basin."""
-    f, target = hands @ [1.0, 1.0j], cage.contacts @ [1.0, 1.0j]
-    moved = np.abs(f.mean(axis=1) - target.mean()) / cage.outline.diameter
-    turned = np.abs(np.angle((f[:, 1] - f[:, 0]) / (target[1] - target[0])))
-    hands, f = hands[far := (moved > position) | (turned > angle)], f[far]
-    w = f[:, 1] - f[:, 0]
-    rows = np.column_stack([f[:, 0].real, f[:, 0].imag, np.angle(w), np.abs(w)])
-    order = np.argsort(rows[:, 3])
-    for chunk in np.array_split(order, max(1, len(order) // 500)):
-        if len(chunk):
-            inside = np.flatnonzero(query(cage, rows[chunk]).verdict == TARGET)
-            if len(inside):
-                return float(rows[chunk[inside[0]], 3]), hands[chunk[inside[0]]]
-    return math.inf, None
 
 
 def _wrapped(angle: Floats) -> Floats:

@@ -12,16 +12,15 @@ from icage.cells.membership import TARGET, query
 from icage.friction.levels import FrictionLevel, friction_levels
 from icage.outline import Outline
 from icage.planner import plan
-from tests.oracles.geometry import Ring
+from tests.oracles.geometry import Floats, Ring
 from tests.oracles.jams import (
-    least_in_the_basin,
     residual,
     sample_of,
     three_finger_jams,
     two_finger_jams,
 )
 from tests.oracles.polygons import FAMILIES
-from tests.oracles.targets import Target, random_target
+from tests.oracles.targets import Target, grasp_on, random_target
 
 AN_EDGE = 31
 """Points on an edge."""
@@ -54,12 +53,34 @@ def drawn(seed: int) -> tuple[Target, float]:
     return target, float(np.exp(rng.uniform(np.log(0.02), 0.0)))
 
 
+def drawn_round(seed: int) -> tuple[Target, float]:
+    """The same on an object with many short edges, even or not: lobes, flattened at random."""
+    rng = np.random.default_rng(seed)
+    mu = float(np.exp(rng.uniform(np.log(0.02), 0.0)))
+    for _ in range(50):
+        n = int(rng.integers(30, 70))
+        even = np.arange(n) * 2.0 * math.pi / n
+        angle = even if rng.random() < 0.5 else np.sort(rng.random(n)) * 2.0 * math.pi
+        radius = 1.0 + 0.25 * np.cos(rng.integers(2, 5) * angle + 1.0)
+        flat = rng.uniform(0.4, 1.0)
+        ring = np.column_stack([radius * np.cos(angle), flat * radius * np.sin(angle)])
+        contacts = grasp_on(Ring.of(ring), rng)
+        if contacts is not None:
+            return Target("round", ring, contacts, 0.0), mu
+    raise RuntimeError("no grasp on 50 round outlines")
+
+
 def compared(seed: int) -> Compared:
     """Level and samples of one target."""
     target, mu = drawn(seed)
-    cage = plan(Outline(target.vertices), target.contacts)
+    return compared_on(target.vertices, target.contacts, mu)
+
+
+def compared_on(vertices: Floats, contacts: Floats, mu: float, an_edge: int = AN_EDGE) -> Compared:
+    """Level and samples of a grasp, with so many points on an edge."""
+    cage = plan(Outline(vertices), contacts)
     (found,) = friction_levels(cage, [mu])
-    sampled = _sampled(cage, found)
+    sampled = _sampled(cage, found, an_edge)
     level = math.inf if found.sigma_first is None else found.sigma_first
     if found.jam is None:
         return Compared(level, sampled, 0.0, True)
@@ -69,13 +90,13 @@ def compared(seed: int) -> Compared:
     return Compared(level, sampled, left, bool(answer.verdict[0] == TARGET))
 
 
-def _sampled(cage: Cage, found: FrictionLevel) -> float:
+def _sampled(cage: Cage, found: FrictionLevel, an_edge: int) -> float:
     """The least sigma of a sampled far jam in the basin, or the frictionless level (inf: none)."""
     first = math.inf if cage.sigma_first is None else cage.sigma_first
     below = first if math.isfinite(first) else cage.sigma_largest or math.inf
     ring, hand = Ring.of(cage.outline.vertices), cage.hand.unit_fingers
     around = None if found.jam is None else found.jam.contacts
-    sample = sample_of(ring, found.mu, AN_EDGE, around)
+    sample = sample_of(ring, found.mu, an_edge, around)
     hands = np.concatenate(
         [
             two_finger_jams(ring, hand, sample, below),
@@ -83,4 +104,21 @@ def _sampled(cage: Cage, found: FrictionLevel) -> float:
         ]
     )
     allowed = found.tolerance
-    return min(first, least_in_the_basin(cage, hands, allowed.position, allowed.angle)[0])
+    return min(first, _least_in_the_basin(cage, hands, allowed.position, allowed.angle))
+
+
+def _least_in_the_basin(cage: Cage, hands: Floats, position: float, angle: float) -> float:
+    """Least sigma of the hands (k, 3, 2) far from the target and, says the query, in its basin."""
+    f, target = hands @ [1.0, 1.0j], cage.contacts @ [1.0, 1.0j]
+    moved = np.abs(f.mean(axis=1) - target.mean()) / cage.outline.diameter
+    turned = np.abs(np.angle((f[:, 1] - f[:, 0]) / (target[1] - target[0])))
+    f = f[(moved > position) | (turned > angle)]
+    w = f[:, 1] - f[:, 0]
+    rows = np.column_stack([f[:, 0].real, f[:, 0].imag, np.angle(w), np.abs(w)])
+    order = np.argsort(rows[:, 3])
+    for chunk in np.array_split(order, max(1, len(order) // 500)):
+        if len(chunk):
+            inside = np.flatnonzero(query(cage, rows[chunk]).verdict == TARGET)
+            if len(inside):
+                return float(rows[chunk[inside[0]], 3])
+    return math.inf

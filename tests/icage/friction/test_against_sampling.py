@@ -5,12 +5,38 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import icage
 from icage.friction import levels
 from icage.friction.contacts import Contacts, contacts_of
 from icage.geometry.exterior import Pieces
 from icage.outline import Outline
 from icage.planner import plan
-from tests.icage.friction.beside_sampling import Compared, compared, drawn
+from tests.icage.friction.beside_sampling import (
+    Compared,
+    compared,
+    compared_on,
+    drawn,
+    drawn_round,
+)
+
+TOOLS = {
+    "saw": [
+        [449.4637915733793, 59.19175003076005],
+        [339.63148923080416, 105.10441218066889],
+        [344.6192616012874, 28.95647144901392],
+    ],
+    "wrench": [
+        [114.7771133524764, 118.91298975507776],
+        [58.68164060734225, 139.97480043881086],
+        [80.28326899604164, 85.32687814486496],
+    ],
+    "pliers": [
+        [35.48587539910406, 52.79354102982568],
+        [60.10197535453722, 24.975239805799745],
+        [70.14564620996693, 53.860564582604404],
+    ],
+}
+"""The grasps by point fingers that `icage grasps` lists first, [mm]."""
 
 FEW = range(63)
 MANY = range(63, 700)
@@ -23,6 +49,22 @@ def wrong(seeds: range) -> dict[int, Compared]:
 
 def test_levels_agree_with_sampling() -> None:
     assert wrong(FEW) == {}
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_levels_on_round_objects_agree_with_sampling(seed: int) -> None:
+    target, mu = drawn_round(seed)
+    result = compared_on(target.vertices, target.contacts, mu, an_edge=7)
+    assert result.agrees, result
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mu", [0.02, 0.1, 0.15, 0.4])
+@pytest.mark.parametrize("name", TOOLS)
+def test_levels_on_the_tools_agree_with_sampling(name: str, mu: float) -> None:
+    case = icage.load(name)
+    result = compared_on(case.outline.vertices, np.array(TOOLS[name]), mu, an_edge=15)
+    assert result.agrees, result
 
 
 @pytest.mark.slow
