@@ -9,7 +9,7 @@ sigma is an upper bound of the true one.
 from __future__ import annotations
 
 import math
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -71,8 +71,8 @@ def vertex_cones(ring: Ring, v: int, phi: float) -> list[tuple[float, float]]:
         return [(right, 0.5 * (right + left)), (0.5 * (right + left), left)]
     if left - right < math.pi:
         return [(right, left)]
-    third = 2.0 * math.pi / 3.0
-    return [(k * third, (k + 1) * third) for k in range(3)]
+    thirds = np.linspace(0.0, 2.0 * math.pi, 4).tolist()
+    return list(pairwise(thirds))
 
 
 def two_finger_jams(ring: Ring, hand: Floats, sample: Sample, below: float) -> Floats:
@@ -84,7 +84,7 @@ def two_finger_jams(ring: Ring, hand: Floats, sample: Sample, below: float) -> F
     pushes = np.abs(_wrapped(angle - sample.middle[:, None])) <= sample.half[:, None] + SLACK
     resists = np.abs(_wrapped(angle + np.pi - sample.middle[None])) <= sample.half[None] + SLACK
     found: list[Floats] = []
-    for i, j in combinations(range(3), 2):
+    for i, j in combinations(range(len(z)), 2):
         for a, b in ((i, j), (j, i)):
             side = z[b] - z[a]
             use = pushes & resists & (np.abs(gap) < below * abs(side)) & (np.abs(gap) > 0.0)
@@ -107,8 +107,7 @@ def three_finger_jams(ring: Ring, hand: Floats, sample: Sample, mu: float, below
     p = sample.point @ [1.0, 1.0j]
     e, g = (edge.ravel() for edge in np.meshgrid(range(len(ring)), range(len(ring))))
     found: list[Floats] = []
-    for a in range(3):
-        b, c = (a + 1) % 3, (a + 2) % 3
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         ratio = (z[c] - z[a]) / (z[b] - z[a])
         # p + ratio (start_e + s side_e - p) = start_g + u side_g
         m1, m2 = ratio * side[e], -side[g]

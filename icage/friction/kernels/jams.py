@@ -185,12 +185,10 @@ def _within(polygon, n, sector, thick, spare):
     """Keep the hands whose w points into a sector of at most half a turn."""
     row = np.zeros(5)
     row[4] = thick
-    for k in range(3):
-        # left of the right edge, right of the left edge, and ahead
-        turn = -0.5 * math.pi if k == 1 else 0.5 * math.pi if k == 0 else 0.0
-        spread = -sector[1] if k == 0 else sector[1] if k == 1 else 0.0
-        row[2] = math.cos(sector[0] + spread + turn)
-        row[3] = math.sin(sector[0] + spread + turn)
+    # left of the right edge, right of the left edge, and ahead
+    for turn in (0.5 * math.pi - sector[1], sector[1] - 0.5 * math.pi, 0.0):
+        row[2] = math.cos(sector[0] + turn)
+        row[3] = math.sin(sector[0] + turn)
         n = _keep(polygon, n, row, spare)
     return n
 
