@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from icage.errors import IcageError, InputError
     from icage.formats.cage_json import read_cage
     from icage.formats.load import load
+    from icage.friction.levels import FrictionLevel, Jam, JamTolerance, friction_levels
     from icage.grasp import Grasp
     from icage.grasps.regrasp import regrasp
     from icage.grasps.wanted import HandLimits
@@ -37,17 +38,21 @@ _WHERE = {
     "Cage": "icage.cage",
     "CageStatus": "icage.cage",
     "Case": "icage.case",
+    "FrictionLevel": "icage.friction.levels",
     "Grasp": "icage.grasp",
     "GraspMinimum": "icage.cage",
     "HandLimits": "icage.grasps.wanted",
     "HandShape": "icage.hand",
     "IcageError": "icage.errors",
     "InputError": "icage.errors",
+    "Jam": "icage.friction.levels",
+    "JamTolerance": "icage.friction.levels",
     "Outline": "icage.outline",
     "Placement": "icage.hand",
     "PlacementClass": "icage.placement_class",
     "Puncture": "icage.cage",
     "Sublevels": "icage.minima",
+    "friction_levels": "icage.friction.levels",
     "load": "icage.formats.load",
     "plan": "icage.planner",
     "read_cage": "icage.formats.cage_json",
@@ -59,17 +64,21 @@ __all__ = [
     "Cage",
     "CageStatus",
     "Case",
+    "FrictionLevel",
     "Grasp",
     "GraspMinimum",
     "HandLimits",
     "HandShape",
     "IcageError",
     "InputError",
+    "Jam",
+    "JamTolerance",
     "Outline",
     "Placement",
     "PlacementClass",
     "Puncture",
     "Sublevels",
+    "friction_levels",
     "load",
     "plan",
     "read_cage",

@@ -22,6 +22,7 @@ from icage.values import Value
 if TYPE_CHECKING:
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
+    from icage.friction.levels import FrictionLevel, JamTolerance
 
 
 class CageStatus(StrEnum):
@@ -250,6 +251,29 @@ class Cage(Value):
             one_of(level, ("sigma_max", "sigma_first"), "level")
             return self.sigma_first if level == "sigma_first" else self.sigma_max
         return a_number(level, "level")
+
+    def friction(self, mu: float, tolerance: JamTolerance | None = None) -> FrictionLevel:
+        """Below which level closing ends near the target although the fingers rub.
+
+        ``mu`` [1] is Coulomb's coefficient, ``tolerance`` what counts as near (0.005 diameters and
+        0.02 rad). For several coefficients ``icage.friction_levels`` shares the work, and tells
+        what is raised.
+
+        Examples
+        --------
+        >>> from icage.planner import plan
+        >>> cage = plan(
+        ...     [[0, 0], [1, 0], [0.5, 0.75**0.5]],
+        ...     [[0.5, 0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]],
+        ... )
+        >>> cage.friction(0.01).jam is None
+        True
+        >>> cage.friction(0.1).jam.fingers
+        (1, 2, 3)
+        """
+        from icage.friction.levels import friction_levels
+
+        return friction_levels(self, (mu,), tolerance)[0]
 
     def save(self, file: str | Path) -> None:
         """Write the cage as ``icage-plan/1``, whole or not at all; ``icage.read_cage`` reads it.

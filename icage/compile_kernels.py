@@ -45,7 +45,7 @@ def main(options: list[str]) -> int:
     gc.set_threshold(50_000, 20, 100)  # a compiler leaves little garbage: a tenth of the time
     machine_code_at_once(patient=False)
     jobs = deque([_plan, _plan_discs, _queries, _starts, _regions])
-    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels]
+    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels, _friction]
     waiting = 0
     while jobs:
         job = jobs.popleft()
@@ -116,6 +116,10 @@ def _one_hand() -> None:
 def _sublevels() -> None:
     case = _case("T_best")
     icage.sublevels(case.outline, case.hand)
+
+
+def _friction() -> None:
+    icage.plan(_case("T_best")).friction(0.3)
 
 
 def _case(name: str) -> icage.Case:

@@ -75,3 +75,14 @@ SLIDE_GIVE: Final = 1e-13
 """[diameter] How far into a wall a finger may be on a plateau: above the rounding of w, and so
 small that edges which are parallel to 1e-6 only do not look like a plateau (at 1e-11 one of 20,000
 random targets did)."""
+
+NEAR_POSITION: Final = 0.005
+"""[diameter] A jam counts as the target if the middle of the fingers is at most this far off ...
+[docs/formats.md, Tolerances]"""
+
+NEAR_TURN: Final = 0.02
+"""[rad] ... and the hand is turned by at most this. [docs/formats.md, Tolerances]"""
+
+JAM_THICK: Final = 1e-11
+"""[diameter] A finger this close to an edge or a vertex may push there: jams are too many, never
+too few; above the rounding of a corner, far below the accuracy of any level that is promised."""

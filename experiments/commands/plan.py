@@ -4,10 +4,22 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import Any
+from math import radians
+from typing import TYPE_CHECKING, Any
 
 from experiments.cases.asked import add_case, case_of
-from experiments.io.options import add_json, check_output, same
+from experiments.io.options import (
+    add_json,
+    check_output,
+    not_negative,
+    not_negative_list,
+    same,
+)
+
+if TYPE_CHECKING:
+    from icage.cage import Cage
+    from icage.case import Case
+    from icage.friction.levels import JamTolerance
 
 METHODS = ("cells", "contact-space", "both")
 
@@ -44,6 +56,61 @@ def add_parser(subparsers: Any) -> None:
         help="with --method contact-space: leave out the tunnel edges of Sec. V-B; unsafe, to show "
         "what they are for",
     )
+    parser.add_argument(
+        "--friction",
+        type=not_negative_list,
+        metavar="MU[,MU...]",
+        help="for these coefficients of friction, too: the level below which closing ends near the "
+        "target (point fingers)",
+    )
+    parser.add_argument(
+        "--within-position",
+        type=not_negative,
+        metavar="SHARE",
+        help="with --friction: near is so many diameters (0.005)",
+    )
+    parser.add_argument(
+        "--within-angle-deg",
+        type=not_negative,
+        metavar="ANGLE",
+        help="with --friction: and so many degrees (1.146, which is 0.02 rad)",
+    )
+
+
+def _tolerance(args: argparse.Namespace, case: Case) -> JamTolerance | None:
+    """What counts as near the target, if friction is asked for and can be computed."""
+    from icage.errors import InputError
+
+    within = (args.within_position, args.within_angle_deg)
+    if args.friction is None:
+        if within != (None, None):
+            raise InputError("--within-position and --within-angle-deg go with --friction only")
+        return None
+    from icage.friction.levels import JamTolerance
+
+    if case.finger_radius > 0.0:
+        raise InputError(
+            "--friction is for point fingers; those of "
+            f"{case.name} are discs of radius {case.finger_radius:g} {case.unit}"
+        )
+    usual = JamTolerance()
+    return JamTolerance(
+        usual.position if within[0] is None else within[0],
+        usual.angle if within[1] is None else radians(within[1]),
+    )
+
+
+def _friction(
+    cage: Cage, args: argparse.Namespace, tolerance: JamTolerance | None
+) -> tuple[dict[str, Any], list[str]]:
+    """Keys and lines about friction; none if it was not asked for."""
+    if tolerance is None:
+        return {}, []
+    from icage.formats.friction_json import friction_document, friction_summary
+    from icage.friction.levels import friction_levels
+
+    found = friction_levels(cage, args.friction, tolerance)
+    return friction_document(found, tolerance), list(friction_summary(cage, found, tolerance))
 
 
 def run(args: argparse.Namespace) -> int:
@@ -67,6 +134,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--no-tunnels goes with --method contact-space only")
     if args.bracket and case.reading is None:
         raise InputError(f"--bracket is for drawings; the outline of {case.name} is exact")
+    tolerance = _tolerance(args, case)
     from experiments.cases.by_methods import planned
     from experiments.cases.chosen import chosen, say_how_to_keep
 
@@ -78,11 +146,13 @@ def run(args: argparse.Namespace) -> int:
     for line in answer.disagreements:
         print(f"icage: the methods disagree: {line}", file=sys.stderr)
     bounds = bracket(case) if args.bracket else None
+    friction, friction_lines = _friction(answer.cells, args, tolerance)
     document: dict[str, Any] = {}
     if args.json is not None:
         document = plan_document(answer.cage, answer.regions(), case.name, case.unit)
         if bounds is not None:
             document["bracket"] = bracket_document(bounds)
+        document.update(friction)
         json_text(document)  # a number that cannot be written fails before any file appears
     if args.figure is not None:
         from experiments.figures.plan import draw_plan, figure_regions
@@ -95,6 +165,8 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(plan_summary(answer.cage, case.name, case.unit)))
         if bounds is not None:
             print("\n".join(bracket_summary(bounds, case.unit)))
+        for line in friction_lines:
+            print(line)
         if args.method == "both" and not answer.disagreements:
             print("methods      cells and contact space agree to 1e-7")
     return 1 if answer.disagreements else 0

@@ -40,6 +40,11 @@ def not_negative(text: str) -> float:
     return value
 
 
+def not_negative_list(text: str) -> tuple[float, ...]:
+    """Finite numbers, zero or above, with commas between them."""
+    return tuple(not_negative(part.strip()) for part in text.split(","))
+
+
 def count(text: str) -> int:
     """A whole number from 1 to ten million."""
     return _whole(text, 1, 10_000_000)
