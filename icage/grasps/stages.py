@@ -99,11 +99,14 @@ class Polish(NamedTuple):
         That are compared there, with up to ``_OF_AN_IDEA`` grasps each.
     rounds:
         Of improvement there.
+    others:
+        The same for grasps that are unlike the best of their idea; none: they are left out.
     """
 
     segments: int
     ideas: int
     rounds: tuple[Round, ...]
+    others: tuple[Round, ...] = ()
 
 
 _OF_AN_IDEA = 4
@@ -114,7 +117,7 @@ _UNLIKE = 0.01
 and all that are nearer are wrong alike."""
 
 _POLISHES = (
-    Polish(8, 30, (Round(8, 0.003, 30), Round(4, 0.0005, 30))),
+    Polish(8, 30, (Round(8, 0.003, 30), Round(4, 0.0005, 30)), (Round(4, 0.003, 30),)),
     Polish(SEGMENTS, 3, (Round(3, 0.0003, 30),)),
 )
 """Levels are good to 1e-4 at 8 segments; ``plan`` has the last word."""
@@ -252,24 +255,29 @@ class Stages:
                 group[distinct(best.contacts[group], _UNLIKE * size)][:_OF_AN_IDEA]
                 for group in ideas
             ]
-            rows = (
-                np.concatenate(first),
-                np.setdiff1d(np.concatenate(unlike), np.concatenate(first)),
-            )
-            for kind, some in zip(("the best", "others"), rows, strict=True):
-                if not len(some):
-                    continue
-                again: list[Findings] = []
-                triples, points = evaluator.on_features(best.of(some))
-                stage = f"polishing {kind}, {polish.segments} chords"
-                crew.grasps(evaluator, triples, points, stage, again)
-                fine += again
-                found = _best(again)
-                seeds = [g[0] for g in groups(found.contacts, size, polish.rounds[0].most)]
-                self._improve(
-                    evaluator, crew, found.of(np.array(seeds, np.int64)), polish.rounds, stage, fine
+            rows = np.concatenate(first)
+            stage = f"polishing, {polish.segments} chords"
+            self._polish(evaluator, crew, best.of(rows), polish.rounds, stage, fine)
+            rows = np.setdiff1d(np.concatenate(unlike), rows)
+            if len(rows) and polish.others:
+                self._polish(
+                    evaluator, crew, best.of(rows), polish.others, f"{stage}, others", fine
                 )
             best = _best(fine)
+
+    def _polish(
+        self, evaluator: GraspEvaluator, crew: Crew, some: Findings, rounds: tuple[Round, ...],
+        stage: str, keep: list[Findings],
+    ) -> None:  # fmt: skip
+        """Compare some grasps again, and improve the best of them."""
+        again: list[Findings] = []
+        triples, points = evaluator.on_features(some)
+        crew.grasps(evaluator, triples, points, stage, again)
+        keep += again
+        found = _best(again)
+        seeds = [g[0] for g in groups(found.contacts, self.outline.diameter, rounds[0].most)]
+        best = found.of(np.array(seeds, np.int64))
+        self._improve(evaluator, crew, best, rounds, stage, keep)
 
     def _improve(
         self, evaluator: GraspEvaluator, crew: Crew, seeds: Findings,
