@@ -53,7 +53,9 @@ class RationalBezier:
 
         The zeros of p' have too few digits in powers of t, where weights differ by far.
         """
-        t = np.linspace(0.0, 1.0, 64 * len(self.weights) + 1)
+        near_end = np.geomspace(1e-7, 1e-3, 9)  # an extremum beside an end lies between no samples
+        even = np.linspace(0.0, 1.0, 64 * len(self.weights) + 1)
+        t = np.unique(np.concatenate([even, near_end, 1.0 - near_end]))
         zeros: list[float] = []
         for axis, values in enumerate(self.at(t).T):
             rising = np.diff(values) > 0.0

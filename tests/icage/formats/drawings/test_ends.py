@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from icage import load
@@ -66,6 +66,7 @@ def test_tangles_are_refused():
 
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 10_000), degree=st.integers(2, 7), spread=st.floats(0.0, 3.0))
+@example(seed=5984, degree=2, spread=1.0)
 def test_a_rational_curve_is_flattened_within_the_distance(seed: int, degree: int, spread: float):
     rng = np.random.default_rng(seed)
     curve = RationalBezier(
