@@ -29,6 +29,7 @@ from icage.discs.offsets import offsets
 from icage.errors import GraspError, InputError
 from icage.formats.drawings.read import trace_file
 from icage.formats.drawings.reading import Side
+from icage.hand import Placement
 from icage.outline import Outline
 from icage.planner import plan
 from icage.sampling import SamplingError, draw_starts
@@ -55,7 +56,7 @@ class Bracket:
     tolerance:
         [unit] How far either outline is from the drawing, at most.
     placement:
-        x, y, theta, sigma: where the hand stands, clear of both outlines, in the frame of the
+        Where the hand stands, clear of both outlines, in the frame of the
         case's outline.
     clearance:
         [unit] Its least distance from the case's outline.
@@ -66,7 +67,7 @@ class Bracket:
     lower: float | None
     upper: float | None
     tolerance: float
-    placement: tuple[float, float, float, float]
+    placement: Placement
     clearance: float
     vertices: tuple[int, int]
 
@@ -105,10 +106,10 @@ def bracket(case: Case) -> Bracket:
             f"and around the drawing (the deepest has {clearance:.3g} {case.unit}); give a smaller "
             f"tolerance than {tolerance:.3g} {case.unit}"
         )
-    x, y, theta, sigma = row.tolist()
     return Bracket(
-        levels[0], levels[1], tolerance, (x, y, theta, sigma), clearance, (vertices[0], vertices[1])
-    )
+        levels[0], levels[1], tolerance, Placement(*row.tolist()), clearance,
+        (vertices[0], vertices[1]),
+    )  # fmt: skip
 
 
 def _deepest(cage: Cage, case: Case) -> tuple[FloatArray, float]:

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from typing import Any, Final
+from typing import Any
 
 from experiments.cases.free_gap import free_gap
 from icage.cage import Cage
 from icage.case import Case
+from icage.formats.case_json import GRASPS, object_document
 from icage.grasps.planned import PlannedGrasps, score
 from icage.grasps.wanted import Aim
-
-FORMAT: Final = "icage-grasps/1"
 
 
 def grasps_document(case: Case, planned: PlannedGrasps, args: Namespace) -> dict[str, Any]:
     """The first ``args.top`` grasps and what came to nothing; lengths in the case's unit."""
     best = zip(planned.cages[: args.top], planned.alike, strict=False)
     return {
-        "format": FORMAT,
-        "name": case.name,
-        "unit": case.unit,
-        "outline": {"vertices": case.outline.vertices},
-        "finger_radius": case.finger_radius,
+        **object_document(case, GRASPS),
         "aim": args.aim,
         "grasps": [{**_entry(cage, args.aim), "alike": alike} for cage, alike in best],
         "failed": [{"contacts": f.contacts, "why": f.why} for f in planned.failures],

@@ -26,6 +26,9 @@ _APART = 1e-4
 are nearly alike, as where an arc goes over into its edge, one is enough; taking them up one by one
 finds that."""
 
+_WEDGED = 1e6
+"""[1] Forces beyond this, over the vector that they balance, come from rounding."""
+
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -97,6 +100,20 @@ def _without_pulling(
         force = np.zeros(len(force))
         force[pressing] = found[pressing]
     return pressing, np.zeros(len(force))
+
+
+def balanced(columns: FloatArray, wanted: FloatArray, within: float) -> FloatArray | None:
+    """Forces >= 0 (k,) whose sum over columns is a vector; None if they miss it.
+
+    ``within`` bounds the miss over the length of the vector. Walls that face each other across a
+    finger balance anything by the rounding of their directions, with forces beyond all others:
+    that is no balance.
+    """
+    force, miss = pushing(columns, wanted)
+    size = float(np.linalg.norm(wanted))
+    if miss > within * size or float(force.max(initial=0.0)) > _WEDGED * size:
+        return None
+    return force
 
 
 def pushes(force: FloatArray) -> BoolArray:

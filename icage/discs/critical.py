@@ -16,7 +16,7 @@ from itertools import combinations
 import numpy as np
 
 from icage.arrays import FloatArray
-from icage.discs.balance import free_directions, pushes, pushing, slope_of_half_square
+from icage.discs.balance import balanced, free_directions, pushes, pushing, slope_of_half_square
 from icage.discs.descent import FLAT, closed, way_down
 from icage.discs.features import Feature, Features
 from icage.hand import HandShape
@@ -271,9 +271,9 @@ class CriticalHands:
             return [*features, deepest]
         weak = int(np.argmin(force))
         if pushes(-force)[weak]:
-            _, miss = pushing(self._features.gaps(v, features).slope.T, slope_of_half_square(v))
-            if miss <= _BALANCED * np.hypot(v[2], v[3]):  # more are touched than are needed
-                return None
+            slopes = self._features.gaps(v, features).slope.T
+            if balanced(slopes, slope_of_half_square(v), _BALANCED) is not None:
+                return None  # more are touched than are needed
             return features[:weak] + features[weak + 1 :]
         return None
 
@@ -281,8 +281,8 @@ class CriticalHands:
         """What the hand is, if its forces balance pushing and it is of the wanted kind."""
         chosen = self._features.chosen(features)
         gaps = self._features.gaps_of(v, chosen)
-        force, miss = pushing(gaps.slope.T, slope_of_half_square(v))
-        if miss > _BALANCED * np.hypot(v[2], v[3]):
+        force = balanced(gaps.slope.T, slope_of_half_square(v), _BALANCED)
+        if force is None:
             return None
         loaded = pushes(force)
         along = free_directions(gaps.slope[loaded])

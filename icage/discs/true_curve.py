@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.discs.balance import finger_maps, pushes, pushing, slope_of_half_square
+from icage.discs.balance import balanced, finger_maps, pushes, pushing, slope_of_half_square
 from icage.errors import GraspError, HandError
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
@@ -34,10 +34,6 @@ true curve is nowhere further from a polygon than a small part of the radius."""
 
 _INSIDE = 1e-9
 """[diameter] A finger may be this far inside a feature; one this near to it touches it."""
-
-_WEDGED = 1e6
-"""[1] Forces beyond this, over sigma, are those of walls that face each other across a finger: they
-balance anything by the rounding of their directions."""
 
 _BALANCED = 1e-7
 """[1] Residual of the forces in a minimum, over the size of the hand."""
@@ -254,9 +250,8 @@ class _System:
         gaps = self.gaps(v)
         if not -_INSIDE <= float(gaps.min()) <= _INSIDE:
             return False
-        force, miss = pushing(self.slopes(v)[gaps <= _INSIDE].T, slope_of_half_square(v))
-        sigma = np.hypot(*v[2:])
-        return bool(miss <= _BALANCED * sigma and force.max(initial=0.0) <= _WEDGED * sigma)
+        touched = self.slopes(v)[gaps <= _INSIDE].T
+        return balanced(touched, slope_of_half_square(v), _BALANCED) is not None
 
     def polished(self, v: FloatArray, *, loaded: bool = False) -> FloatArray | None:
         """Newton on stationarity and contact of the features that carry or nearly carry force.

@@ -88,13 +88,20 @@ def read_object(path: Path) -> Case:
 def case_document(case: Case, made_by: str | None = None) -> dict[str, Any]:
     """A case as ``icage-case/1``; ``made_by`` is the command that found it."""
     return {
-        "format": FORMAT,
+        **object_document(case, FORMAT),
+        **({"grasp": {"contacts": case.target}} if case.target is not None else {}),
+        **({"made_by": made_by} if made_by is not None else {}),
+    }
+
+
+def object_document(case: Case, form: str) -> dict[str, Any]:
+    """The object and its fingers: how every document begins that is read as a case."""
+    return {
+        "format": form,
         "name": case.name,
         "unit": case.unit,
         "outline": {"vertices": case.outline.vertices},
         "finger_radius": case.finger_radius,
-        **({"grasp": {"contacts": case.target}} if case.target is not None else {}),
-        **({"made_by": made_by} if made_by is not None else {}),
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
@@ -45,12 +45,12 @@ def test_brackets_are_nested_and_hold_the_level_of_a_fine_outline(cross: Path, r
         low, high, widest = found.lower, found.upper, found.upper - found.lower
     # The level of the escape from the same placement, on an outline that is neither.
     fine = icage.load(cross, tolerance=0.003).outline
-    x, y, theta, sigma = found.placement
+    placement = found.placement
     around = fine if radius == 0.0 else offsets(fine, radius, 64).inner
     free_space = FreeSpace.around(around, case.hand)
-    row = np.array([[x, y, theta, sigma]])
+    row = np.array([astuple(placement)])
     cells = Locator.of(free_space).cells(case.hand.fingers(row), 1e-12)
-    level = search(free_space, cells[0], sigma).level
+    level = search(free_space, cells[0], placement.sigma).level
     assert low - 1e-3 < level < high + 1e-3
 
 

@@ -1,4 +1,8 @@
-"""How often edges cross, before anyone pays minutes and gigabytes for a union. Our own."""
+"""How often edges cross, before anyone pays minutes and gigabytes for a union. Our own.
+
+Areas may cross millions of times, so theirs are estimated from a sample; lines are cut at every
+crossing and may lie over each other without crossing, so theirs are counted.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,7 @@ from icage.arrays import FloatArray
 from icage.errors import FormatError
 
 MAX_CROSSINGS: Final = 100_000
-"""Of the edges of a path, or of all lines that enclose areas: seconds."""
+"""Of the edges of a path: seconds."""
 
 MAX_OVERLAPS: Final = 2_000_000
 """Of the edges of all shapes, whose union is cheaper: most of them are inside it."""

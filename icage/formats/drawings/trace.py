@@ -98,11 +98,15 @@ def traced(drawing: Drawing, reading: Reading) -> Traced:
     drawn = size(corners_of(counted))
     # What has no area, or is not picked, may reach further than the object: measured once more.
     rough = DEFAULT_TOLERANCE * drawn
-    drawn = size(object_part(drawing, reading, rough, _gap(reading, rough, scale)).area)
+    rough_gap = _gap(reading, rough, scale)
+    part = object_part(drawing, reading, rough, rough_gap)
+    drawn = size(part.area)
     width = drawn * scale if reading.width is None else reading.width
     tolerance = _relative(reading.tolerance, width) * drawn
     scale = width / drawn
-    part = object_part(drawing, reading, tolerance, _gap(reading, tolerance, scale))
+    gap = _gap(reading, tolerance, scale)
+    if (tolerance, gap) != (rough, rough_gap):  # most often they are the same
+        part = object_part(drawing, reading, tolerance, gap)
     ring = _ring(part.area)
     if reading.safe is None:
         fewer = simplified(ring, _SIMPLIFY * tolerance)

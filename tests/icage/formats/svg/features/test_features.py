@@ -15,7 +15,8 @@ from icage.errors import FormatError
 from icage.formats.drawings.area import area_of, drawn_area
 from icage.formats.drawings.reading import Reading
 from icage.formats.svg.reader import read
-from tests.icage.formats.svg.features.table import FEATURES, Feature
+from tests.icage.formats.svg.features.feature import Feature
+from tests.icage.formats.svg.features.table import FEATURES
 
 RSVG = shutil.which("rsvg-convert")
 SCALE = 5

@@ -1,0 +1,132 @@
+"""Features of paint and of the cascade."""
+
+# ruff: noqa: E501 - a row a feature
+
+from __future__ import annotations
+
+from tests.icage.formats.svg.features.feature import (
+    BIG,
+    COVER,
+    PAGE,
+    R_BOX,
+    Feature,
+    R,
+    more,
+    refused,
+    same,
+    styled,
+)
+
+VISIBLE, INLINE = 'visibility="visible"', 'display="inline"'
+
+PAINT = [
+    same("fill none", BIG.format("none") + R),
+    same("fill transparent", BIG.format("transparent") + R),
+    same("fill hex of no alpha", BIG.format("#f000") + BIG.format("#ff000000") + R),
+    same("fill rgba", BIG.format("rgba(1,2,3,0)") + BIG.format("hsla(0,0%,0%,0%)") + R),
+    Feature("fill rgb with a slash", BIG.format("rgb(0 0 0 / 50%)"), 10000),
+    refused("fill unknown", BIG.format("reddish"), "fill='reddish'"),
+    refused("fill mixed", BIG.format("color-mix(in srgb, red, blue)"), "fill='color-mix"),
+    same("fill inherited", f'<g fill="none">{BIG.format("inherit")}</g>{R}'),
+    same("fill of a group", f'<g fill="none"><rect width="100" height="100"/></g>{R}'),
+    Feature("fill initial", '<g fill="none"><rect width="50" height="20" style="fill:initial"/></g>',
+            1000, rsvg=False),
+    same("current colour", f'<g color="rgba(0,0,0,0)">{BIG.format("currentColor")}</g>{R}'),
+    Feature("current colour is seen", BIG.format("currentcolor"), 10000),
+    same("opacity of zero", f'<g opacity="0">{COVER}</g>{R}'),
+    same("opacity in percent", f'<g style="opacity:0%">{COVER}</g>{R}'),
+    same("fill opacity", f'<g fill-opacity="0">{COVER}</g>{R}'),
+    Feature("half seen", '<rect width="50" height="20" opacity=".6" fill-opacity="90%"/>', 1000),
+    same("hidden", f'<g visibility="hidden">{COVER}</g>{R}'),
+    same("visible in hidden", f'<g visibility="hidden">{more(R, VISIBLE)}'
+         "</g>"),
+    same("display none", f'<g display="none">{more(R, INLINE)}</g>{R}'),
+    Feature("fill rule nonzero", '<path d="M10 10h60v60h-60z M20 20h40v40h-40z"/>', 3600),
+    Feature("fill rule evenodd", '<path fill-rule="evenodd" d="M10 10h60v60h-60z M20 20h40v40h-40z"/>',
+            2000),
+    Feature("fill rule inherited", '<g style="fill-rule:evenodd"><path d="M10 10h60v60h-60z M20 20h40v'
+            '40h-40z"/></g>', 2000),
+    Feature("hole by direction", '<path d="M10 10h60v60h-60z M20 20v40h40v-40z"/>', 2000),
+    Feature("gradient", '<linearGradient id="g"><stop stop-color="red"/></linearGradient>'
+            '<rect width="50" height="20" fill="url(#g)"/>', 1000),
+    same("gradient without stops", f'<linearGradient id="g"/>{BIG.format("url(#g)")}{R}'),
+    same("gradient of no alpha", '<radialGradient id="g"><stop stop-opacity="0"/><stop offset="1" '
+         f'style="stop-color:transparent"/></radialGradient>{BIG.format("url(#g)")}{R}'),
+    Feature("gradient by template", '<linearGradient id="a"><stop/></linearGradient><linearGradient '
+            'id="g" xlink:href="#a"/><rect width="50" height="20" fill="url(#g)"/>', 1000),
+    Feature("pattern", '<pattern id="p" width="5" height="5" patternUnits="userSpaceOnUse"><rect '
+            'width="5" height="5"/></pattern><rect width="50" height="20" fill="url(#p)"/>', 1000),
+    same("missing paint", BIG.format("url(#none)") + R),
+    Feature("missing paint with another", '<rect width="50" height="20" fill="url(#none) red"/>', 1000),
+    refused("paint of a file", BIG.format("url(a.svg#g)"), "fill='a.svg#g'"),
+    refused("paint of a mesh", f'<meshgradient id="g"/>{BIG.format("url(#g)")}', "<meshgradient>"),
+    refused("context fill", BIG.format("context-fill"), "fill='context-fill'"),
+    refused("mask", f'<mask id="m"/><g mask="url(#m)">{R}</g>', "mask="),
+    refused("filter", f'<filter id="f"/><g filter="url(#f)">{R}</g>', "filter="),
+    same("mask on what is hidden", f'<g display="none" mask="url(#m)">{R}</g>{R}'),
+    refused("marker", '<marker id="m"><path d="M0 0h9v9"/></marker><path d="M0 0h9v9z" '
+            'marker-start="url(#m)"/>', "marker-start="),
+    same("stroke alone", R + '<path d="M0 60h90v30z" fill="none" stroke="red"/>', rsvg=False),
+]  # fmt: skip
+
+STYLE = [
+    same("class", styled(".a{fill:none}", more(COVER, 'class="b a"') + R)),
+    same("class is not an attribute's match", styled(".A{fill:none}", more(R, 'class="a"'))),
+    same("id", styled("#a{fill:none}", more(COVER, 'id="a"') + R)),
+    same("tag", styled("circle{fill:none}", '<circle r="90"/>' + R)),
+    same("star", styled("*{fill:none} rect{fill:red}", '<circle r="90"/>' + R)),
+    same("descendant", styled("g circle{fill:none}", f'<g><g><circle r="90"/></g></g>{R}')),
+    same("child", styled("g>circle{fill:none}", f'<g><circle r="90"/></g>{R}')),
+    same("no child", styled("g>rect{fill:none}", f"<g><a>{R}</a></g>")),
+    same("sibling", styled("circle+circle{fill:none}", f'<circle r="0"/><circle r="90"/>{R}')),
+    same("later sibling", styled("a~circle{fill:none}", f'<a/><g/><circle r="90"/>{R}')),
+    same("attribute", styled('[r="90"]{fill:none}', f'<circle r="90"/>{R}')),
+    same("attribute begins", styled("[id^=gho]{fill:none}", f'<circle id="ghost" r="90"/>{R}')),
+    same("first child", styled("circle:first-child{fill:none}", f'<g><circle r="90"/>{R}</g>')),
+    same("not", styled("rect:not(.a){fill:none}", COVER + more(R, 'class="a"'))),
+    same("list of selectors", styled("g, circle{fill:none}", f'<circle r="90"/>{R}')),
+    same("hover never", styled("rect:hover{fill:none}", R)),
+    refused("selector unknown", styled("rect:strange{fill:none}", R), "selector 'rect:strange'"),
+    same("later rule wins", styled("circle{fill:red}circle{fill:none}", f'<circle r="90"/>{R}')),
+    same("specific rule wins", styled(".a{fill:none}circle{fill:red}",
+         f'<circle class="a" r="90"/>{R}')),
+    same("rule over attribute", styled("circle{fill:none}", f'<circle fill="red" r="90"/>{R}')),
+    same("style over rule", styled("#a{fill:red}", f'<circle id="a" style="fill:none" r="90"/>{R}')),
+    same("important", styled(".a{fill:none !important}",
+         f'<circle class="a" style="fill:red" r="90"/>{R}')),
+    same("important in style", styled(".a{fill:red !important}",
+         f'<circle class="a" style="fill:none!important" r="90"/>{R}')),
+    same("style after the shape", f'<circle r="90"/>{R}<style>circle{{fill:none}}</style>'),
+    same("style in cdata", f'<circle r="90"/>{R}<style type="text/css"><![CDATA[ /* c */ '
+         "g > a, circle { fill : none ; } ]]></style>"),
+    same("two styles in one", f'<circle style="fill:red;fill:none" r="90"/>{R}'),
+    same("display of a rule", styled(".a{display:none}", f'<g class="a">{COVER}</g>{R}')),
+    same("rule for what use repeats", styled("#g circle{fill:none}",
+         f'<defs><g id="g"><circle r="90"/></g></defs><use href="#g"/>{R}')),
+    same("media screen", styled("@media screen{circle{fill:none}}", f'<circle r="90"/>{R}'),
+         rsvg=False),
+    same("media print", styled("@media print{rect{fill:none}}", R)),
+    same("media of dark screens", styled("@media (prefers-color-scheme:dark){rect{fill:none}}", R)),
+    refused("media width", styled("@media (min-width:9px){rect{fill:none}}", R), "media query"),
+    refused("import", styled("@import url(a.css);", R), "@import url"),
+    refused("supports", styled("@supports (fill:red){rect{fill:none}}", R), "@supports"),
+    refused("nested rules", styled("g{rect{fill:none}}", R), "inside a style rule"),
+    same("fonts and keyframes", styled("@font-face{font-family:a}@keyframes a{from{fill:red}}", R)),
+    refused("css animation", styled("rect{animation:a 1s}", R), "animation='a 1s'"),
+    refused("variables", styled("rect{--a:none;fill:var(--a)}", R), "fill='var"),
+    Feature("geometry of css", styled("rect{x:10px;width:40px;height:30px}",
+            '<rect y="20" width="5" height="5"/>'), 1200, R_BOX),
+    refused("geometry without unit", styled("rect{width:40}", R), "width='40', which has no unit"),
+    Feature("em", '<g font-size="10"><rect width="4em" height="20" style="font-size:5px"/></g>', 400),
+    Feature("em of em", '<g font-size="10px"><g style="font-size:2em"><rect width="2em" height="10"/>'
+            "</g></g>", 400),
+    Feature("rem", '<g font-size="3"><rect width="4rem" height="10"/></g>', 400,
+            root=PAGE + ' font-size="10"', rsvg=False),
+    Feature("units", '<rect width="10mm" height="1in"/>', 960 / 25.4 * 96, (0, 0, 960 / 25.4, 96)),
+    Feature("points and picas", '<rect width="60pt" height="3pc"/>', 80 * 48, (0, 0, 80, 48)),
+    Feature("cm and q", '<rect width="1cm" height="40Q"/>', (96 / 2.54) ** 2, rsvg=False),
+    refused("unit of the font", '<rect width="9ex" height="9"/>', "depends on the font"),
+    refused("unit of the window", '<rect width="9vw" height="9"/>', "depends on the window"),
+    refused("unit unknown", '<rect width="9ell" height="9"/>', "width='9ell'"),
+    refused("calc", '<rect style="width:calc(9px + 1px)" height="9"/>', "width='calc"),
+]  # fmt: skip
