@@ -61,7 +61,7 @@ def add_parser(subparsers: Any) -> None:
         type=not_negative_list,
         metavar="MU[,MU...]",
         help="for these coefficients of friction, too: the level below which closing ends near the "
-        "target (point fingers)",
+        "target",
     )
     parser.add_argument(
         "--within-position",
