@@ -77,8 +77,8 @@ def add_parser(subparsers: Any) -> None:
     )
 
 
-def _tolerance(args: argparse.Namespace, case: Case) -> JamTolerance | None:
-    """What counts as near the target, if friction is asked for and can be computed."""
+def _tolerance(args: argparse.Namespace) -> JamTolerance | None:
+    """What counts as near the target, if friction is asked for."""
     from icage.errors import InputError
 
     within = (args.within_position, args.within_angle_deg)
@@ -88,11 +88,6 @@ def _tolerance(args: argparse.Namespace, case: Case) -> JamTolerance | None:
         return None
     from icage.friction.levels import JamTolerance
 
-    if case.finger_radius > 0.0:
-        raise InputError(
-            "--friction is for point fingers; those of "
-            f"{case.name} are discs of radius {case.finger_radius:g} {case.unit}"
-        )
     usual = JamTolerance()
     return JamTolerance(
         usual.position if within[0] is None else within[0],
@@ -134,7 +129,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--no-tunnels goes with --method contact-space only")
     if args.bracket and case.reading is None:
         raise InputError(f"--bracket is for drawings; the outline of {case.name} is exact")
-    tolerance = _tolerance(args, case)
+    tolerance = _tolerance(args)
     from experiments.cases.by_methods import planned
     from experiments.cases.chosen import chosen, say_how_to_keep
 

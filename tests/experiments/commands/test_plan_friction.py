@@ -30,7 +30,15 @@ def test_the_keys_of_the_document(capsys: Any) -> None:
         plan["friction"], icage.friction_levels(cage, [0.3, 0.0, 0.1]), strict=True
     ):
         assert row["sigma_first"] == pytest.approx(found.sigma_first, rel=1e-12)
-    assert plan["friction"][1] == {"mu": 0.0, "sigma_first": plan["sigma_first"], "jam": None}
+    assert plan["friction"][1] == {
+        "mu": 0.0,
+        "sigma_first": plan["sigma_first"],
+        "jam": None,
+        "ends": {"position_max": 0.0, "angle_max_deg": 0.0},
+    }
+    ends = plan["friction"][0]["ends"]
+    assert 0.0 <= ends["position_max"] <= 0.005
+    assert 0.0 <= ends["angle_max_deg"] <= math.degrees(0.02)
     jam = plan["friction"][0]["jam"]
     assert jam["sigma"] == plan["friction"][0]["sigma_first"] < plan["sigma_first"]
     assert jam["placement"]["sigma"] == pytest.approx(jam["sigma"], rel=1e-12)
@@ -57,20 +65,27 @@ def test_the_lines(capsys: Any) -> None:
     lines = [line for line in result.out.splitlines() if line.startswith("  mu ")]
     assert [line.split()[1] for line in lines] == ["0", "0.3"]
     assert "jam" not in lines[0]
-    assert lines[1].endswith("jam there")
+    assert "jam there; stops at most" in lines[1]
 
 
 def test_what_is_no_cage_and_what_never_escapes(capsys: Any) -> None:
     nothing = document(capsys, "--friction", "0.2", case=str(CASES / "rectangle_notcage.json"))
     assert nothing["friction"][0]["jam"] is None
     never = document(capsys, "--friction", "0.01", case=str(CASES / "never_escapes_a.json"))
-    assert never["friction"] == [{"mu": 0.01, "sigma_first": None, "jam": None}]
+    (row,) = never["friction"]
+    assert (row["mu"], row["sigma_first"], row["jam"]) == (0.01, None, None)
+
+
+def test_disc_fingers(capsys: Any) -> None:
+    plan = document(capsys, "--friction", "0,0.1", case=str(CASES / "disc_Y.json"))
+    first, rough = plan["friction"]
+    assert first["sigma_first"] == plan["sigma_first"] > rough["sigma_first"]
+    assert rough["jam"]["placement"]["sigma"] == pytest.approx(rough["sigma_first"], rel=1e-9)
 
 
 @pytest.mark.parametrize(
     ("case", "options", "words"),
     [
-        ("disc_Y", ("--friction", "0.1"), "point fingers"),
         ("T_best", ("--friction", "0.1,-1"), "below 0"),
         ("T_best", ("--friction", "0.1,,2"), "finite number"),
         ("T_best", ("--friction", "nan"), "finite number"),
