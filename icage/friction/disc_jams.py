@@ -93,7 +93,9 @@ def disc_jams(cage: Cage, work: CageWork, near: Near, subsets: BoolArray) -> Dis
     search = work.search
     free_space = search.free_space
     first = np.inf if cage.sigma_first is None else cage.sigma_first * (1.0 - 2.0 * LEVEL)
-    known = min(first, search.level)
+    # beyond its own first level the polygon's search goes on into other basins
+    own = np.inf if work.polygon_first is None else work.polygon_first * (1.0 - 2.0 * LEVEL)
+    known = min(first, own, search.level)
     inside = int(np.searchsorted(search.node_level, known))
     outline = NearFrame.of(cage.outline).outline_into(cage.outline)
     curve = TrueCurve.of(outline, cage.finger_radius)

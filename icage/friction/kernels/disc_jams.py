@@ -46,6 +46,10 @@ _NARROW = 1e-5
 _TRIES = 4000
 """Bounds that are computed for one choice; what has not been decided then counts as a jam."""
 
+_GAP = 1e-9
+"""[1] Parts that could lower a level by less (relative) are not looked at; it is lowered by that.
+Where forces balance along the curve sigma hardly changes, and all parts there would be."""
+
 _STACK = 256
 """Parts that wait."""
 
@@ -195,7 +199,7 @@ def least_disc_jam(
     best = below
     for position in range(len(order)):
         choice = order[position]
-        if bounds[choice] >= best:
+        if bounds[choice] >= best * (1.0 - _GAP):
             break
         cell, chosen = cells[choices.cell[choice]], choices.chosen[choice]
         floor = bounds[choice]
@@ -211,7 +215,7 @@ def least_disc_jam(
         tries = 0
         while top:
             top -= 1
-            if waiting[top] >= best:
+            if waiting[top] >= best * (1.0 - _GAP):
                 continue
             state[:] = states[top]
             if (
@@ -230,8 +234,8 @@ def least_disc_jam(
             for k in range(2):
                 tries += 1
                 bound[k] = _bound(
-                    pieces, z, cell, finger, chosen, count, contacts, child[k], phi, near, best,
-                    thick, room, point[k],
+                    pieces, z, cell, finger, chosen, count, contacts, child[k], phi, near,
+                    best * (1.0 - _GAP), thick, room, point[k],
                 )  # fmt: skip
                 bound[k] = max(bound[k], own)
             # the lower one is looked at first
@@ -242,7 +246,7 @@ def least_disc_jam(
                     points[top] = point[k]
                     waiting[top] = bound[k]
                     top += 1
-    return LeastJam(best if best < below else np.inf, hand, touches)
+    return LeastJam(best * (1.0 - _GAP) if best < below else np.inf, hand, touches)
 
 
 @compiled

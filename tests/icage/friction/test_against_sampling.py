@@ -14,6 +14,7 @@ from icage.planner import plan
 from tests.icage.friction.beside_sampling import (
     Compared,
     compared,
+    compared_disc,
     compared_on,
     drawn,
     drawn_round,
@@ -40,6 +41,8 @@ TOOLS = {
 
 FEW = range(63)
 MANY = range(63, 700)
+FEW_DISCS = range(14, 28)
+MANY_DISCS = range(28, 240)
 
 
 def wrong(seeds: range) -> dict[int, Compared]:
@@ -49,6 +52,21 @@ def wrong(seeds: range) -> dict[int, Compared]:
 
 def test_levels_agree_with_sampling() -> None:
     assert wrong(FEW) == {}
+
+
+def wrong_discs(seeds: range) -> dict[int, Compared]:
+    results = {seed: compared_disc(seed) for seed in seeds}
+    return {seed: result for seed, result in results.items() if result and not result.agrees}
+
+
+def test_levels_of_discs_agree_with_sampling() -> None:
+    assert wrong_discs(FEW_DISCS) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(4))
+def test_levels_of_many_discs_agree_with_sampling(part: int) -> None:
+    assert wrong_discs(MANY_DISCS[part::4]) == {}
 
 
 @pytest.mark.parametrize("seed", range(8))
