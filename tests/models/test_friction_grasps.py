@@ -23,7 +23,8 @@ def test_every_tool_has_one() -> None:
 def test_a_twentieth_of_the_opening_is_kept(path: Path) -> None:
     cage = plan(read_case(path))
     level = cage.friction(MU).sigma_first
-    assert level is not None and cage.sigma_first is not None
+    assert level is not None
+    assert cage.sigma_first is not None
     assert level / cage.sigma_0 >= 1.05
     said = re.search(rf"\| `{path.stem}` \|[^|]*\| ([\d.]+) \| ([\d.]+) \|",
                      (FRICTION / "README.md").read_text(encoding="utf-8"))  # fmt: skip
