@@ -30,11 +30,13 @@ if TYPE_CHECKING:
     from icage.minima import Sublevels
     from icage.outline import Outline
     from icage.placement_class import PlacementClass
+    from icage.placing.best import BestPlacement, place
     from icage.planner import plan
 
 __version__ = "0.1.0"
 
 _WHERE = {
+    "BestPlacement": "icage.placing.best",
     "Cage": "icage.cage",
     "CageStatus": "icage.cage",
     "Case": "icage.case",
@@ -54,6 +56,7 @@ _WHERE = {
     "Sublevels": "icage.minima",
     "friction_levels": "icage.friction.levels",
     "load": "icage.formats.load",
+    "place": "icage.placing.best",
     "plan": "icage.planner",
     "read_cage": "icage.formats.cage_json",
     "regrasp": "icage.grasps.regrasp",
@@ -61,6 +64,7 @@ _WHERE = {
 }
 
 __all__ = [
+    "BestPlacement",
     "Cage",
     "CageStatus",
     "Case",
@@ -80,6 +84,7 @@ __all__ = [
     "Sublevels",
     "friction_levels",
     "load",
+    "place",
     "plan",
     "read_cage",
     "regrasp",
