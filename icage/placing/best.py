@@ -7,6 +7,7 @@ component. How large it is there is the only other question. [docs/theory.md, Se
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -94,6 +95,7 @@ def place(
     opening: float | None = None,
     opening_error: bool = False,
     gap: float = PLACE_GAP,
+    largest: float = math.inf,
 ) -> BestPlacement:
     """Where to put the open hand, and how far each finger may be off.
 
@@ -111,6 +113,8 @@ def place(
         the level costs nothing.
     gap:
         [1] How much larger (relative) a tolerance may be that the search has not excluded.
+    largest:
+        [unit] The hand opens no further than this.
 
     Raises
     ------
@@ -144,7 +148,9 @@ def place(
         raise InputError(f"gap {gap}; a number between 0 and 1 is needed")
     level = cage.sigma_first if mu == 0.0 else cage.friction(mu).sigma_first
     size = _opening(cage, level, opening)
-    found = _deepest(cage, work, level, size, opening_error, gap)
+    if not largest > cage.sigma_0:
+        raise InputError(f"largest {largest:g}; above sigma_0 = {cage.sigma_0:.9g} is needed")
+    found = _deepest(cage, work, level, size, opening_error, gap, largest)
     if not np.isfinite(found.value):
         if found.bound > COLLISION * cage.outline.diameter:
             raise GeometryError(f"no placement found in {found.boxes} boxes of hands")
@@ -170,13 +176,14 @@ def _opening(cage: Cage, level: float | None, opening: float | None) -> float | 
 
 
 def _deepest(
-    cage: Cage, work: CageWork, level: float | None, size: float | None, errs: bool, gap: float
-) -> Deepest:
+    cage: Cage, work: CageWork, level: float | None, size: float | None, errs: bool, gap: float,
+    largest: float,
+) -> Deepest:  # fmt: skip
     """The search's answer, in the frame of the pieces."""
     free_space = work.search.free_space
     pieces, z = free_space.pieces, free_space.z
     bound = np.inf if level is None else level * (1.0 - _BELOW)
-    top = min(bound, free_space.cap) if size is None else size
+    top = min(bound, free_space.cap, largest) if size is None else size
     cells, least = _cells(cage, work, top, cage.sigma_0 if size is None else size)
     edges = _edges(NearFrame.of(cage.outline).into(cage.outline.vertices) - free_space.origin)
     asked = Asked(
