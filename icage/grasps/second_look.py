@@ -2,7 +2,8 @@
 
 What is aimed at is a level that is never above sigma_first, or a tolerance that sigma_first bounds,
 so the candidates are looked at in the order of that bound, until it says that no other can be
-among the best ideas. Then the best are moved, each trial planned again. Our own; the simplex is that of [NelderMead1965].
+among the best ideas. Then the best are moved, each trial planned again. Our own; the simplex is
+that of [NelderMead1965].
 """
 
 from __future__ import annotations
