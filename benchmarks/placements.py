@@ -1,6 +1,6 @@
 """Placements inside the tolerance that ``icage place`` promises, closed in MuJoCo.
 
-    python -m benchmarks.placements [--cases pliers,saw] [--closings 400] [--update-baseline]
+    python -m benchmarks.placements [--cases pliers,saw] [--closings 300] [--update-baseline]
 
 For every case, with the opening known and with an error of it, and with friction where the planner
 has a level for it: hands drawn inside the tolerance of the best placement, half of them with a
@@ -43,7 +43,7 @@ NAMES = (
     "rand16_best", "handsaw_best", "triangle_eq_best", "hammer_best",
 )  # fmt: skip
 FRICTION = (0.05, 0.2)
-CLOSINGS = 400
+CLOSINGS = 300
 SEED = 17
 
 

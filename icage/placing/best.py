@@ -151,8 +151,9 @@ def place(
     if not largest > cage.sigma_0:
         raise InputError(f"largest {largest:g}; above sigma_0 = {cage.sigma_0:.9g} is needed")
     found = _deepest(cage, work, level, size, opening_error, gap, largest)
-    if not np.isfinite(found.value):
-        if found.bound > COLLISION * cage.outline.diameter:
+    floor = COLLISION * cage.outline.diameter
+    if not found.value > floor:
+        if found.bound > floor * (1.0 + gap) and found.boxes >= BOXES:
             raise GeometryError(f"no placement found in {found.boxes} boxes of hands")
         raise GraspError(
             f"no hand of the guaranteed set{'' if size is None else f' at opening {size:g}'} keeps "

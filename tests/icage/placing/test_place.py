@@ -15,7 +15,7 @@ from icage.outline import Outline
 from icage.placing.misplaced import draw_misplaced
 from icage.planner import plan
 from models import CASES
-from tests.icage.placing.beside_sampling import furthest_off, relative
+from tests.icage.placing.beside_sampling import drawn, furthest_off, relative
 
 ROOT = 3.0**0.5
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.5 * ROOT]])
@@ -120,6 +120,15 @@ def test_what_is_refused() -> None:
         icage.place(icage.plan(icage.load(CASES / "rectangle_notcage.json")))
     with pytest.raises(MethodError, match="contact space"):
         icage.place(icage.plan(TRIANGLE, MIDDLES, method="contact-space"))
+
+
+def test_a_set_with_no_room_is_told_of() -> None:
+    """A cage of discs 2e-6 deep, opened by a thousandth of that: nothing is clear by 1e-9."""
+    cage = drawn(448, 0.02)
+    assert cage.sigma_first is not None
+    opening = cage.sigma_0 + 1e-3 * (cage.sigma_first - cage.sigma_0)
+    with pytest.raises(GraspError, match="keeps clear of the object by more than 1e-09"):
+        icage.place(cage, opening=opening)
 
 
 def test_never_escaping() -> None:

@@ -9,7 +9,6 @@ import pytest
 import shapely
 
 import icage
-
 from experiments.study.inputs.placements import BLOCK, Intended, moved
 from experiments.study.inputs.variables import VARIABLES
 from icage.arrays import FloatArray
@@ -103,9 +102,8 @@ def test_the_best_placement_has_the_most_room():
     away = shapely.distance(
         shapely.points(one.cage.hand.fingers(np.array([best, roomy]))), one.cage.outline.polygon
     ).min(axis=1)
-    room = np.minimum(
-        away - one.cage.finger_radius, 0.5 * (one.cage.sigma_first - [best[3], roomy[3]])
-    )
+    margin = one.cage.sigma_first - np.array([best[3], roomy[3]])
+    room = np.minimum(away - one.cage.finger_radius, 0.5 * margin)
     assert room[0] == pytest.approx(found.tolerance, rel=1e-6)
     assert room[1] < room[0]
 
