@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray, read_only
+from icage.cage import Cage
 from icage.cells.membership import TARGET, query
 from icage.cells.work import CageWork, work_of
-from icage.checks import a_number
+from icage.checks import a_number, an_instance
 from icage.errors import GeometryError, GraspError, InputError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import Placement
@@ -25,9 +26,6 @@ from icage.placing.kernels.search import Asked, Deepest, deepest
 from icage.placing.turn_and_shift import TurnAndShift
 from icage.tolerance import COLLISION, LEVEL, PLACE_GAP
 from icage.values import Value
-
-if TYPE_CHECKING:
-    from icage.cage import Cage
 
 BOXES = 2_000_000
 """Boxes looked at before the search gives up: some seconds."""
@@ -141,6 +139,7 @@ def place(
     >>> round(best.tolerance, 4), best.limited_by
     (0.1732, 'clearance')
     """
+    an_instance(cage, Cage, "cage", "; icage.plan makes one")
     work = work_of(cage)
     if work is None:
         raise GraspError(f"there is nothing to place a hand for: not a cage, {cage.why}")

@@ -87,7 +87,8 @@ def compared(cage: Cage, seed: int, mu: float = 0.0) -> Compared:
     off = np.concatenate(
         [draw_misplaced(best, 100, rng), draw_misplaced(best, 100, rng, furthest=True)]
     )
-    assert furthest_off(cage, best, off) <= best.tolerance
+    rounding = 1e-14 * float(np.abs(best.fingers).max() + cage.outline.diameter)
+    assert furthest_off(cage, best, off) <= best.tolerance + rounding
     good = (clearances(cage, off) >= -ROUNDING * cage.outline.diameter) & in_set(cage, off, level)
     at = best.placement.as_array()[None]
     return Compared(

@@ -108,6 +108,8 @@ def test_what_is_refused() -> None:
     for opening in (0.4999, 0.866026, 2.0):
         with pytest.raises(InputError, match="above sigma_0 = 0.5 and below"):
             icage.place(cage, opening=opening)
+    with pytest.raises(InputError, match=r"icage\.plan makes one"):
+        icage.place(TRIANGLE)  # pyright: ignore[reportArgumentType]
     for wrong in (float("nan"), "wide", True):
         with pytest.raises(InputError, match="opening"):
             icage.place(cage, opening=wrong)  # pyright: ignore[reportArgumentType]
