@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -32,13 +33,15 @@ class JamSearch:
     just below; inf if there is no such level.
     """
 
-    def __init__(self, cage: Cage, work: CageWork) -> None:
+    def __init__(self, cage: Cage, work: CageWork, subsets: BoolArray | None = None) -> None:
+        """``subsets`` (k, fingers): only jams in which the fingers of one of these touch."""
         self._cage = cage
-        self._work = work
-        self._subsets = touching_subsets(len(work.search.free_space.z))
+        self._work = work if subsets is None else replace(work, remembered={})
+        every = touching_subsets(len(work.search.free_space.z))
+        self._subsets = every if subsets is None else subsets
         self._discs: DiscJams | None = None
         if cage.finger_radius > 0.0:
-            self._discs = disc_jams(cage, work, self.near(JamTolerance()), self._subsets)
+            self._discs = disc_jams(cage, self._work, self.near(JamTolerance()), self._subsets)
             self.known = self._discs.known
         else:
             # at sigma_first itself the search goes on into other basins, and the puncture is an

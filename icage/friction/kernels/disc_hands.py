@@ -20,6 +20,10 @@ from icage.kernels.compiled import compiled
 OUTSIDE = 3
 """Vertices that one free finger may be held off."""
 
+_ON = 0.02
+"""[1] How far a finger may be off its feature, over how far off its piece: features are those of
+the true curve, pieces have lost the vertices that hardly turn."""
+
 COLUMNS = 2 + 3 * OUTSIDE
 """Columns of the state of a finger: direction and half turn of its part of an arc; then, for each
 vertex that it is held off, the number of that (-1: none), and a range of directions from it."""
@@ -105,7 +109,7 @@ def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thi
     row = room.row
     loose = thick + slack.shift
     for k in range(2, count):
-        own = loose + sagitta(contacts, chosen[k], state[finger[k]])
+        own = _ON * thick + slack.shift + sagitta(contacts, chosen[k], state[finger[k]])
         n = _on_feature(place[k], z[finger[k]], own, row, polygon, n, spare)
         if n == 0:
             return 0

@@ -47,7 +47,7 @@ _NARROW = 1e-5
 _TRIES = 4000
 """Bounds that are computed for one choice; what has not been decided then counts as a jam."""
 
-_GAP = 1e-9
+_GAP = 1e-10
 """[1] Parts that could lower a level by less (relative) are not looked at; it is lowered by that.
 Where forces balance along the curve sigma hardly changes, and all parts there would be."""
 
