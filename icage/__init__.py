@@ -34,11 +34,13 @@ if TYPE_CHECKING:
     from icage.minima import Sublevels
     from icage.outline import Outline
     from icage.placement_class import PlacementClass
+    from icage.placing.best import BestPlacement, place
     from icage.planner import plan
 
 __version__ = "0.1.0"
 
 _WHERE = {
+    "BestPlacement": "icage.placing.best",
     "Cage": "icage.cage",
     "CageStatus": "icage.cage",
     "Case": "icage.case",
@@ -62,6 +64,7 @@ _WHERE = {
     "friction_levels": "icage.friction.levels",
     "load": "icage.formats.load",
     "nearest_jam": "icage.friction.nearest",
+    "place": "icage.placing.best",
     "plan": "icage.planner",
     "read_cage": "icage.formats.cage_json",
     "regrasp": "icage.grasps.regrasp",
@@ -69,6 +72,7 @@ _WHERE = {
 }
 
 __all__ = [
+    "BestPlacement",
     "Cage",
     "CageStatus",
     "Case",
@@ -92,6 +96,7 @@ __all__ = [
     "friction_levels",
     "load",
     "nearest_jam",
+    "place",
     "plan",
     "read_cage",
     "regrasp",

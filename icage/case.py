@@ -127,7 +127,7 @@ class Case(Value):
         self,
         top: int = 10,
         *,
-        aim: Literal["first", "cage", "friction"] = "first",
+        aim: Literal["first", "cage", "friction", "place"] = "first",
         mu: float | None = None,
         rng: np.random.Generator | None = None,
         limits: HandLimits | None = None,
@@ -145,7 +145,9 @@ class Case(Value):
             How many to return; fewer if there are no more.
         aim:
             Rank by sigma_first / sigma_0 ("first"), by sigma_max / sigma_0 ("cage") or, "friction",
-            by what friction leaves of the first: sigma_first(mu) / sigma_0.
+            by what friction leaves of the first: sigma_first(mu) / sigma_0; "place" by how much the
+            fingers of the open hand may be off where it stands best (``icage.place``), over
+            sigma_0.
         mu:
             [1] Coefficient of friction at the fingers, with aim "friction" only.
         rng:

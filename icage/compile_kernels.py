@@ -45,7 +45,7 @@ def main(options: list[str]) -> int:
     gc.set_threshold(50_000, 20, 100)  # a compiler leaves little garbage: a tenth of the time
     machine_code_at_once(patient=False)
     jobs = deque([_plan, _plan_discs, _queries, _starts, _regions])
-    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels, _friction]
+    jobs += [_other_minima, _contact_space, _grasps, _one_hand, _sublevels, _friction, _place]
     waiting = 0
     while jobs:
         job = jobs.popleft()
@@ -121,6 +121,10 @@ def _sublevels() -> None:
 def _friction() -> None:
     icage.plan(_case("T_best")).friction(0.3)
     icage.plan(_case("disc_Y")).friction(0.3)
+
+
+def _place() -> None:
+    icage.place(icage.plan(_case("T_best")), opening_error=True)
 
 
 def _case(name: str) -> icage.Case:

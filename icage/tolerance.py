@@ -86,3 +86,7 @@ NEAR_TURN: Final = 0.02
 JAM_THICK: Final = 1e-11
 """[diameter] A finger this close to an edge or a vertex may push there: jams are too many, never
 too few; above the rounding of a corner, far below the accuracy of any level that is promised."""
+
+PLACE_GAP: Final = 1e-3
+"""[1] The best placement's tolerance is the largest there is, but for this share.
+[docs/formats.md, Tolerances]"""

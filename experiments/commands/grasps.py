@@ -76,10 +76,11 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument(
         "--aim",
-        choices=("first", "cage", "friction"),
+        choices=("first", "cage", "friction", "place"),
         default="first",
         help="rank by sigma_first / sigma_0 (first), by sigma_max / sigma_0 (cage), or by what "
-        "friction at the fingers leaves of the first (friction, with --mu)",
+        "friction at the fingers leaves of the first (friction, with --mu), or by how far the "
+        "fingers may be off where the open hand stands best, over sigma_0 (place)",
     )
     parser.add_argument(
         "--mu",

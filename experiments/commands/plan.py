@@ -64,6 +64,12 @@ def add_parser(subparsers: Any) -> None:
         "target",
     )
     parser.add_argument(
+        "--friction-figure",
+        metavar="FILE",
+        help="with --friction: draw the jams that limit these levels, and the level over the "
+        "coefficient, into FILE (.svg or .png)",
+    )
+    parser.add_argument(
         "--within-position",
         type=not_negative,
         metavar="SHARE",
@@ -85,6 +91,8 @@ def _tolerance(args: argparse.Namespace) -> JamTolerance | None:
     if args.friction is None:
         if within != (None, None):
             raise InputError("--within-position and --within-angle-deg go with --friction only")
+        if args.friction_figure is not None:
+            raise InputError("--friction-figure goes with --friction only")
         return None
     from icage.friction.levels import JamTolerance
 
@@ -108,6 +116,41 @@ def _friction(
     return friction_document(found, tolerance), list(friction_summary(cage, found, tolerance))
 
 
+def _check_figures(args: argparse.Namespace, case: Case) -> None:
+    """Pictures have names of their own, of a kind that is drawn."""
+    from pathlib import Path
+
+    from icage.errors import InputError
+
+    named = [("--figure", args.figure), ("--friction-figure", args.friction_figure)]
+    given = [(option, name) for option, name in named if name is not None]
+    for option, name in given:
+        check_output(option, name, *case.sources)
+        if Path(name).suffix.lower() not in (".svg", ".png"):
+            raise InputError(f"{option} {name!r}: a name ending in .svg or .png is needed")
+    if args.json not in (None, "-"):
+        given.insert(0, ("--json", args.json))
+    for k, (option, name) in enumerate(given):
+        for other, again in given[k + 1 :]:
+            if same(name, again):
+                raise InputError(f"{option} and {other} both name {name!r}")
+
+
+def _draw_friction(
+    cage: Cage, args: argparse.Namespace, tolerance: JamTolerance | None, case: Case
+) -> None:
+    from pathlib import Path
+
+    from experiments.figures.friction import draw_friction
+    from icage.friction.curve import friction_curve
+    from icage.friction.levels import friction_levels
+
+    curve = friction_curve(cage, max(1.0, *args.friction), tolerance)
+    levels = friction_levels(cage, args.friction, tolerance)
+    path = Path(args.friction_figure)
+    draw_friction(cage, levels, curve, case.name, case.unit, path)
+
+
 def run(args: argparse.Namespace) -> int:
     """Plan, then write what was asked for."""
     from pathlib import Path
@@ -120,11 +163,7 @@ def run(args: argparse.Namespace) -> int:
 
     case = case_of(args)
     check_output("--json", args.json, *case.sources)
-    check_output("--figure", args.figure, *case.sources)
-    if args.figure is not None and Path(args.figure).suffix.lower() not in (".svg", ".png"):
-        raise InputError(f"--figure {args.figure!r}: a name ending in .svg or .png is needed")
-    if args.figure is not None and args.json not in (None, "-") and same(args.json, args.figure):
-        raise InputError(f"--json and --figure both name {args.json!r}")
+    _check_figures(args, case)
     if args.no_tunnels and args.method != "contact-space":
         raise InputError("--no-tunnels goes with --method contact-space only")
     if args.bracket and case.reading is None:
@@ -140,6 +179,8 @@ def run(args: argparse.Namespace) -> int:
     answer = planned(case, args.method, tunnels=not args.no_tunnels)
     for line in answer.disagreements:
         print(f"icage: the methods disagree: {line}", file=sys.stderr)
+    if args.friction_figure is not None and answer.cells.status == "not_a_cage":
+        raise InputError(f"--friction-figure: {case.name} is not a cage ({answer.cells.why})")
     bounds = bracket(case) if args.bracket else None
     friction, friction_lines = _friction(answer.cells, args, tolerance)
     document: dict[str, Any] = {}
@@ -154,6 +195,8 @@ def run(args: argparse.Namespace) -> int:
 
         regions = figure_regions(answer.cells)
         draw_plan(answer.cells, regions, case.name, case.unit, Path(args.figure))
+    if args.friction_figure is not None:
+        _draw_friction(answer.cells, args, tolerance, case)
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":

@@ -12,7 +12,7 @@ from experiments.study.inputs.fields import HELP
 if TYPE_CHECKING:
     from experiments.study.run.session import Session
 
-_WORDS = ("starts", "sampling", "uncaged")
+_WORDS = ("starts", "place", "sampling", "uncaged")
 _POSITIVE = ("until_half_width", "position_tolerance", "angle_tolerance", "max_time", "time_step")
 
 

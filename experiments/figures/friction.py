@@ -13,6 +13,7 @@ from math import ceil, degrees
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -25,6 +26,7 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.errors import InputError
 from icage.formats.whole_files import whole_file
+from icage.friction.curve import FrictionCurve
 from icage.friction.forces import JamForces, jam_forces
 from icage.friction.levels import FrictionLevel, Jam, JamTolerance
 
@@ -55,14 +57,12 @@ class _Panel:
 def draw_friction(
     cage: Cage,
     levels: Sequence[FrictionLevel],
-    curve: tuple[FloatArray, FloatArray],
+    curve: FrictionCurve,
     name: str,
     unit: str,
     path: Path,
 ) -> None:
     """Draw the jams of some levels and the curve into an SVG or PNG file, whole or not at all.
-
-    ``curve`` are coefficients (n,), ascending, and sigma_first (n,) of each, [unit].
 
     Raises
     ------
@@ -86,7 +86,7 @@ def draw_friction(
 def _page(
     cage: Cage,
     levels: Sequence[FrictionLevel],
-    curve: tuple[FloatArray, FloatArray],
+    curve: FrictionCurve,
     name: str,
     unit: str,
 ) -> Figure:
@@ -118,7 +118,7 @@ def _page(
         for one in levels
         if one.sigma_first is not None
     ]
-    draw_level_curve(figure.add_axes(box), curve[0], curve[1] / cage.sigma_0, marks)
+    draw_level_curve(figure.add_axes(box), curve.mu, _ratio(cage, curve.level), marks)
     return figure
 
 
@@ -158,6 +158,12 @@ def _title(
         f"{degrees(tolerance.angle):.3g}° of it. Dashed: the target. Wedges: friction cones.",
         fontsize=8.5, color=QUIET_INK,
     )  # fmt: skip
+
+
+def _ratio(cage: Cage, level: FloatArray) -> FloatArray:
+    """Over sigma_0; where the hand may open however far, the largest sigma of the cage."""
+    top = cage.sigma_max if cage.sigma_max is not None else cage.sigma_largest
+    return np.minimum(level, np.inf if top is None else top) / cage.sigma_0
 
 
 def _list(fingers: Sequence[int]) -> str:

@@ -24,8 +24,8 @@ def tell(planned: PlannedGrasps, args: Namespace) -> None:
         lines.append(f"{planned.searches_broken_off} searches were too large and broken off")
     if planned.unplanned:
         lines.append(
-            f"{planned.unplanned} candidates that might be among the best were not planned with "
-            "friction: there were too many"
+            f"{planned.unplanned} candidates that might be among the best were not planned and "
+            "ranked: there were too many"
         )
     if planned.failures:
         lines.append(
@@ -64,6 +64,8 @@ def print_list(case: Case, planned: PlannedGrasps, args: Namespace) -> None:
 def _ranked(args: Namespace) -> str:
     if args.aim == "friction":
         return f"sigma_first at friction {args.mu:g}"
+    if args.aim == "place":
+        return "tolerance of the best placement"
     return "sigma_max" if args.aim == "cage" else "sigma_first"
 
 

@@ -83,7 +83,8 @@ def ranked_grasps(
     wanted:
         What is ranked and which grasps are looked at. aim "first" ranks by sigma_first / sigma_0,
         "cage" by sigma_max / sigma_0 (the largest sigma of the component for a hand that never
-        escapes), "friction" by sigma_first(mu) / sigma_0.
+        escapes), "friction" by sigma_first(mu) / sigma_0, "place" by the tolerance of the best
+        placement over sigma_0.
     workers:
         Threads; the result does not depend on their number.
     seconds:
@@ -97,7 +98,7 @@ def ranked_grasps(
     frame = NearFrame.of(outline)
     outline = frame.outline_into(outline)
     search = Stages(outline, finger_radius, wanted, rng)
-    plans = wanted.aim == "friction"
+    plans = wanted.aim in ("friction", "place")
     begun = time.monotonic()
     with Crew(workers, progress, 0.5 * seconds if plans and seconds else seconds) as crew:
         ended = _as_it_ended(lambda: search.run(crew))

@@ -1,11 +1,14 @@
 """Grasps ranked by what only a plan can tell: the best by sigma_first planned, one after another.
 
-What is aimed at is a level that is never above sigma_first, so the candidates are looked at in the
-order of that bound, until it says that no other can be among the best ideas. Then the best are
-moved, each trial planned again. Our own; the simplex is that of [NelderMead1965].
+What is aimed at is a level that is never above sigma_first, or a tolerance that sigma_first bounds,
+so the candidates are looked at in the order of that bound, until it says that no other can be
+among the best ideas. Then the best are moved, each trial planned again. Our own; the simplex is
+that of [NelderMead1965].
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import minimize  # pyright: ignore[reportUnknownVariableType]
@@ -16,7 +19,7 @@ from icage.grasps.crew import Crew
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.findings import Findings, distinct, groups
 from icage.grasps.planned import planned_or_why
-from icage.grasps.scores import level_of
+from icage.grasps.scores import bound_of, depth_of, level_of
 from icage.grasps.stages import Stages
 from icage.outline import Outline
 
@@ -26,7 +29,7 @@ _NEAR = 0.004
 _IDEAS = 10
 """Ideas that have to be better than what is left."""
 
-_MOST_PLANNED = (6000, 600)
+_MOST_PLANNED = {"friction": (6000, 600), "place": (600, 200)}
 """Candidates that are planned, of points and of discs; ..."""
 
 _BATCH = 16
@@ -82,10 +85,11 @@ class SecondLook:
     def _in_order(self, crew: Crew) -> None:
         found = self.search.best_first()
         size = self.search.outline.diameter
-        found = found.of(np.argsort(-found.score, kind="stable"))
+        bound = self._bound(found)
+        found = found.of(np.argsort(-bound, kind="stable"))
         found = found.of(distinct(found.contacts, _NEAR * size))
-        bound = found.score * _SLACK[self._discs]
-        most = _MOST_PLANNED[self._discs]
+        bound = self._bound(found)
+        most = _MOST_PLANNED[self.search.wanted.aim][self._discs]
         total = min(most, len(found))
         for begin in range(0, total, _BATCH):
             kept = self.best_first()
@@ -99,6 +103,11 @@ class SecondLook:
                 if one is not None:
                     self._keep(crew, [one])
         self.left_out = len(found) - total
+
+    def _bound(self, found: Findings) -> FloatArray:
+        """(n,) what their scores cannot exceed."""
+        high = replace(found, level=found.level * _SLACK[self._discs])
+        return bound_of(high, self.search.wanted)
 
     def _climbs(self, crew: Crew, best: Findings, stride: float, steps: int) -> Findings:
         """Where the best of each idea has come to."""
@@ -147,9 +156,10 @@ class SecondLook:
         cage = _cage(self.search.outline, self.search.radius, found.contacts[row])
         if cage is None:
             return None
-        level = min(level_of(cage, wanted), wanted.limits.sigma_most)
-        if level - cage.sigma_0 < wanted.tolerance:
+        ranked = level_of(cage, wanted)
+        if depth_of(cage, wanted, ranked) < wanted.tolerance:
             return None
+        level = min(ranked, wanted.limits.sigma_most)
         one = found.of(np.array([row], np.int64))
         return Findings(
             one.triples, one.points, cage.contacts[None], np.array([cage.sigma_0]),

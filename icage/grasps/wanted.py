@@ -11,10 +11,11 @@ from icage.arrays import FloatArray
 from icage.checks import a_number, one_of
 from icage.errors import InputError
 
-Aim: TypeAlias = Literal["first", "cage", "friction"]
-"""What is ranked: sigma_first / sigma_0, sigma_max / sigma_0, or sigma_first(mu) / sigma_0."""
+Aim: TypeAlias = Literal["first", "cage", "friction", "place"]
+"""What is ranked: sigma_first / sigma_0, sigma_max / sigma_0, sigma_first(mu) / sigma_0, or
+how much the fingers of the open hand may be off where it stands best, over sigma_0."""
 
-AIMS: Final[tuple[Aim, ...]] = ("first", "cage", "friction")
+AIMS: Final[tuple[Aim, ...]] = ("first", "cage", "friction", "place")
 
 Stretch: TypeAlias = tuple[float, float]
 """From one arclength of the outline to another, counterclockwise from its first vertex, [unit]."""

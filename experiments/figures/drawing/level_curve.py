@@ -16,6 +16,9 @@ _LOG = 0.1
 """[1] Where the least opening left is less than this share of the largest, the axis is
 logarithmic."""
 
+_BETWEEN = 11.0
+"""[pt] Numbers of the axis are no nearer to each other."""
+
 _TICKS = (1.001, 1.002, 1.005, 1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 
 
@@ -73,7 +76,14 @@ def _ticks(axes: Axes, low: float, high: float, logarithmic: bool) -> None:
     if not logarithmic:
         axes.yaxis.set_major_formatter(lambda value, _: f"{1.0 + value:.4g}")
         return
-    ticks = [t for t in _TICKS if low <= t - 1.0 <= high]
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    tall = float(axes.get_window_extent().height) * 72.0 / figure.dpi
+    apart = (high / low) ** (_BETWEEN / tall)
+    ticks: list[float] = []
+    for t in reversed([t for t in _TICKS if low <= t - 1.0 <= high]):
+        if not ticks or (ticks[-1] - 1.0) / (t - 1.0) >= apart:
+            ticks.append(t)
     axes.yaxis.set_major_locator(FixedLocator([t - 1.0 for t in ticks]))
     axes.yaxis.set_minor_locator(NullLocator())
     axes.yaxis.set_major_formatter(lambda value, _: f"{1.0 + value:g}")

@@ -19,6 +19,7 @@ from icage.case import Case
 from icage.errors import InputError
 
 STARTS: Final = ("guaranteed", "cage", "nominal")
+PLACES: Final = ("best",)
 SAMPLING: Final = ("random", "sobol", "saltelli")
 UNCAGED: Final = ("close", "skip")
 
@@ -45,6 +46,7 @@ class StudyConfig:
     seed: int = 0
     starts: str = "guaranteed"
     nominal: tuple[float, float, float, float] | None = None
+    place: str | None = None
     sampling: str = "random"
     uncaged: str = "close"
     until_half_width: float | None = None
@@ -72,6 +74,10 @@ class StudyConfig:
                     f"until_half_width with sampling = {self.sampling!r}: its design is made for "
                     "all trials; random is needed"
                 )
+        if self.place is not None:
+            _one_of("place", self.place, PLACES)
+            if self.nominal is not None:
+                raise ConfigError("place and nominal both say where the hand is meant to stand")
         if self.nominal is not None and not self.nominal[3] > 0.0:
             raise ConfigError(f"nominal: sigma is {self.nominal[3]:g}; above 0 is needed")
         drawn = self.starts != "nominal" or self.noisy
@@ -110,6 +116,9 @@ class StudyConfig:
 
 
 FIELDS: Final = tuple(HELP)
+
+_MEANT: Final = ("nominal", "place")
+"""Fields that say where the hand is meant to stand."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -151,9 +160,11 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
         given[name] = _typed(name, value)
     if not given.get("starts"):
         moved = any(is_placement(name) for name in vary)
-        given["starts"] = "nominal" if moved or given.get("nominal") is not None else "guaranteed"
-    if given.get("nominal") is not None and given["starts"] != "nominal":
-        raise ConfigError(f"nominal is given, but starts = {given['starts']!r}")
+        meant = moved or any(given.get(name) is not None for name in _MEANT)
+        given["starts"] = "nominal" if meant else "guaranteed"
+    for name in _MEANT:
+        if given.get(name) is not None and given["starts"] != "nominal":
+            raise ConfigError(f"{name} is given, but starts = {given['starts']!r}")
     config = StudyConfig(vary=vary, **given)
     check_fits(vary, config.nominal, case)
     return config
@@ -165,7 +176,9 @@ def _typed(name: str, value: Any) -> Any:
         if isinstance(value, bool) or not isinstance(value, int):
             raise ConfigError(f"{name} is {value!r}; a whole number is needed")
         return value
-    if name in ("case", "starts", "sampling", "uncaged"):
+    if name == "place" and value is None:
+        return None
+    if name in ("case", "starts", "place", "sampling", "uncaged"):
         if not isinstance(value, str):
             raise ConfigError(f"{name} is {value!r}; a word is needed")
         return value

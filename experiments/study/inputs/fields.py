@@ -18,6 +18,8 @@ HELP: Final = {
     "nominal": "x,y,theta,sigma of the nominal placement, in the case's unit and rad (where x is "
     "negative: --nominal=...); default: the one with the most room of 1,000 from the guaranteed "
     "set",
+    "place": "best: the nominal placement is the one whose fingers and opening may be off by most "
+    "(icage place --opening-error)",
     "sampling": "random (default), sobol (scrambled: rates converge faster) or saltelli (says "
     "which input matters most)",
     "uncaged": "starts that the planner does not call caged: close from them all the same (the "

@@ -21,6 +21,7 @@ from icage.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
+from icage.placing.best import place
 from icage.sampling import Box, StartSet, draw_starts
 
 BLOCK: Final = 250
@@ -62,8 +63,7 @@ class Intended:
         self._box: Box | None = None
         self.nominal: FloatArray | None = None
         if config.starts == "nominal":
-            given = config.nominal
-            self.nominal = roomiest(cage, config.seed) if given is None else np.array(given)
+            self.nominal = _nominal(config, cage)
 
     def placements(self, numbers: IntArray, streams: IntArray) -> FloatArray:
         """Placements (n, 4) with these numbers in these streams.
@@ -94,6 +94,15 @@ class Intended:
                 del self._blocks[next(iter(self._blocks))]
             self._blocks[key] = draw_starts(self._cage, which, BLOCK, rng, box=self._box).placements
         return self._blocks[key]
+
+
+def _nominal(config: StudyConfig, cage: Cage) -> FloatArray:
+    """The placement (4,) that is meant."""
+    if config.nominal is not None:
+        return np.array(config.nominal)
+    if config.place is not None:
+        return place(cage, opening_error=True).placement.as_array()
+    return roomiest(cage, config.seed)
 
 
 def roomiest(cage: Cage, seed: int) -> FloatArray:

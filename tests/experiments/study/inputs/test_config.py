@@ -146,6 +146,7 @@ def test_where_a_study_starts_if_it_does_not_say():
     assert config(vary={"place_x": "0:1"}).starts == "nominal"
     assert config(vary={"bias_theta": 0.1}).starts == "nominal"
     assert config(nominal=[0, 0, 0, 1]).starts == "nominal"
+    assert config(place="best").starts == "nominal"
     assert config(vary={"place_x": "0:1"}, starts="cage").starts == "cage"
 
 
@@ -248,6 +249,7 @@ def test_what_is_written_down_is_read_again(one: Distribution):
     ("options", "expected"),
     [
         (["--nominal=-1.5,2,-0.25,3"], ["--nominal=-1.5,2,-0.25,3"]),
+        (["--place", "best"], ["--place", "best"]),
         (["--starts", "guaranteed", "--vary", "place_x=0:1"], ["--starts", "guaranteed"]),
         (["--until-half-width", "0.01"], ["--until-half-width", "0.01"]),
         (["--trials", "7", "--uncaged", "skip"], ["--trials", "7", "--uncaged", "skip"]),
@@ -375,6 +377,9 @@ def test_a_bad_input_gets_one_line(
         (["--nominal", "1e9,29,1.05,90"], ["nominal: finger", "41.0488 mm, 10 diameters"]),
         (["--nominal", "0,0,0,100"], ["nominal: finger 2", "41.0488 mm, 10 diameters"]),
         (["--nominal", "1,2,3,1", "--starts", "cage"], ["nominal", "starts = 'cage'"]),
+        (["--place", "here"], ["place", "best"]),
+        (["--place", "best", "--starts", "cage"], ["place", "starts = 'cage'"]),
+        (["--place", "best", "--nominal", "25,29,1.05,90"], ["place and nominal"]),
         (["--until-half-width", "0.6"], ["until_half_width", "up to 0.5"]),
         (["--until-half-width", "0.1", "--sampling", "sobol"], ["until_half_width", "random"]),
         (["--position-tolerance", "1"], ["position_tolerance", "up to 0.5"]),
@@ -417,6 +422,8 @@ BAD_TOML = [
     ("nominal = [1, 2, 3, 'a']", ["nominal", "four finite numbers"]),
     ("nominal = [1, 2, 3, inf]", ["nominal", "four finite numbers"]),
     ("nominal = 3", ["nominal", "four finite numbers"]),
+    ("place = 3", ["place", "a word"]),
+    ("place = 'roomiest'", ["place", "best"]),
     ("vary = 3", ["vary", "table"]),
     ("[vary]\nfriction = [0, 1]", ["vary.friction", "neither a number nor a distribution"]),
     ("[vary]\nfriction = true", ["vary.friction", "neither a number nor a distribution"]),

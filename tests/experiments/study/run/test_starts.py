@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
+import icage
 from experiments.study.inputs.placements import BLOCK, Intended, moved
 from experiments.study.inputs.variables import VARIABLES
 from icage.arrays import FloatArray
@@ -89,6 +91,21 @@ def test_intended_placements_hang_on_their_number_only():
         assert np.concatenate(back[::-1]).tobytes() == whole.tobytes()
         assert len(np.unique(whole[:, 0])) == 6
         assert query(one.cage, whole).in_cage.all()
+
+
+def test_the_best_placement_has_the_most_room():
+    one = study(vary={"place_xy": "normal:1%"}, place="best")
+    (best,) = one.intended.placements(np.array([3]), np.array([0]))
+    found = icage.place(one.cage, opening_error=True)
+    assert best.tobytes() == found.placement.as_array().tobytes()
+    roomy = study(vary={"place_xy": "normal:1%"}).intended.nominal
+    away = shapely.distance(
+        shapely.points(one.cage.hand.fingers(np.array([best, roomy]))), one.cage.outline.polygon
+    ).min(axis=1)
+    margin = one.cage.sigma_first - np.array([best[3], roomy[3]])
+    room = np.minimum(away - one.cage.finger_radius, 0.5 * margin)
+    assert room[0] == pytest.approx(found.tolerance, rel=1e-6)
+    assert room[1] < room[0]
 
 
 def test_the_nominal_placement_has_room():

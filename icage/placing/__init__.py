@@ -1,0 +1,1 @@
+"""Where to put the open hand so that it may be off by most."""
