@@ -202,13 +202,23 @@ def friction_curve(
         for one, two in ((a, middle), (middle, b)):
             heapq.heappush(waiting, _fall(one, two, bent))
     mus = sorted(found)
-    levels = tuple(found[mu] for mu in mus)
+    levels = _never_rising([found[mu] for mu in mus])
     jumps.sort(key=lambda pair: pair[0].mu)
     return FrictionCurve(
         np.array(mus), np.array([_level(one) for one in levels]),
         tuple(Jump(a.mu, b.mu, _level(a), _level(b), b.jam) for a, b in jumps),
         chosen, levels, cage,
     )  # fmt: skip
+
+
+def _never_rising(found: list[FrictionLevel]) -> tuple[FrictionLevel, ...]:
+    """The levels by mu, without the rounding of searches that were bounded by others."""
+    kept = found[:1]
+    for level in found[1:]:
+        last = kept[-1]
+        rises = _level(level) > _level(last)
+        kept.append(replace(level, sigma_first=last.sigma_first) if rises else level)
+    return tuple(kept)
 
 
 def _fall(a: FrictionLevel, b: FrictionLevel, bent: float) -> tuple[float, float, float, float]:

@@ -41,8 +41,8 @@ TOOLS = {
 
 FEW = range(63)
 MANY = range(63, 700)
-FEW_DISCS = range(14, 28)
-MANY_DISCS = range(28, 240)
+FEW_DISCS = range(14, 26)
+MANY_DISCS = range(26, 240)
 
 
 def wrong(seeds: range) -> dict[int, Compared]:

