@@ -1,5 +1,4 @@
-"""The way down from a puncture of the true curve. Our own. [docs/theory.md, Sec. 4]
-"""
+"""The way down from a puncture of the true curve. Our own. [docs/theory.md, Sec. 4]"""
 
 from __future__ import annotations
 
