@@ -162,7 +162,7 @@ def _space(engine: Any, scene: Scene, config: SecondConfig) -> Space:
 def _arm(engine: Any, space: Space, scene: Scene, k: int) -> Body:
     """Tip mass such that the common decay time of the space gives the finger its damping.
 
-    The disc is larger by ``TOUCHING``: what the engine holds, ``sim.closing.step_check`` then sees
+    The disc is larger by ``TOUCHING``: what the engine holds, ``sim.closing.look`` then sees
     touching.
     """
     config, kinematics = scene.config, scene.kinematics

@@ -88,7 +88,7 @@ class SimConfig:
     remains: float = 5e-6
     """[diameter, rad] Without friction a closing is also at rest when its speed falls exponentially
     and what is left of the way, speed times time constant, is below this
-    (``sim.closing.step_check``): a twentieth of what counts as the target. 0: wait for
+    (``sim.closing.look``): a twentieth of what counts as the target. 0: wait for
     ``still_speed``."""
 
     computed_contacts: int = 3
