@@ -1,9 +1,10 @@
 """Does a hand stick where it stands, and at which coefficient of friction does it begin to?
 
-The hand is put down at a placement, a hair smaller so that no finger strikes, and closes. It *sticks* if after ``WATCHED`` seconds its middle is less than ``SLIPS`` from where it was
-in the object, and it is turned by less than that. Ten per cent less friction than it takes to stick
-moves it by ``SLIPS`` in some milliseconds; creep (``SimConfig.impratio``) by a hundredth of that in
-all the time.
+The hand is put down at a placement, a hair smaller so that no finger strikes, and closes. It
+*sticks* if after ``WATCHED`` seconds its middle is less than ``SLIPS`` from where it was in the
+object, and it is turned by less than that. Ten per cent less friction than it takes to stick moves
+it by ``SLIPS`` in some milliseconds; creep (``SimConfig.impratio``) by a hundredth of that in all
+the time.
 """
 
 from __future__ import annotations
