@@ -1,5 +1,11 @@
 """Does a hand stick where it stands, and at which coefficient of friction does it begin to?
 
+Two measurements. *Put down*: at rest at a placement, the motor pulls. *Let go*: the hand sticks at
+much more friction than it takes, and the friction falls until it slips. Two contacts carry forces
+that statics knows, and both give the same coefficient. With three there are more forces than
+equations: which of them act depends on how the hand came there, and a hand that is put down may
+slide where one that has been pressed there holds. Statics says where a hand can stick.
+
 The hand is put down at a placement, a hair smaller so that no finger strikes, and closes. It
 *sticks* if after ``WATCHED`` seconds its middle is less than ``SLIPS`` from where it was in the
 object, and it is turned by less than that. Ten per cent less friction than it takes to stick moves
@@ -19,6 +25,7 @@ from sim.closing.batch import close_many
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import DIVERGED
 from sim.world.config import SimConfig
+from sim.world.engine import mj
 from sim.world.scene import Scene
 
 SLIPS: Final = 1e-4
@@ -39,6 +46,25 @@ press there with 35 times the drive force and creep at 2e-4 diameters / s with 1
 
 AROUND: Final = 0.5
 """[1] A threshold is looked for between 1 - this and 1 + this times the one foretold."""
+
+FALLS_FROM: Final = (1.5, 2.0, 3.0, 5.0)
+"""[1] Friction falls from these times the coefficient foretold ..."""
+
+FALLS_TO: Final = 0.8
+"""[1] ... to this, ..."""
+
+FALLS: Final = 2.0
+"""[s] ... in this time, by equal shares; the hand slips by ``SLIPS`` within 2 % of it."""
+
+PRESSED: Final = 0.3
+"""[s] Before it falls."""
+
+NEAR_BY: Final = 3.0 * SLIPS
+"""[diameter, rad] A hand that sticks this near to a placement sticks there: it may move a little
+before its forces have found one another."""
+
+_LOOK: Final = 10
+"""[step] Between two looks while friction falls."""
 
 NARROW: Final = 0.002
 """[1] An interval is halved until it is narrower than this, relative."""
@@ -118,3 +144,40 @@ def threshold(
         middle = 0.5 * (slips + sticks)
         slips, sticks = (slips, middle) if holds(middle) else (middle, sticks)
     return Threshold(slips, sticks, deepest, tried)
+
+
+def released_at(
+    scene: Scene, placement: FloatArray, foretold: float, config: SimConfig | None = None
+) -> float:
+    """The least coefficient at which a hand that stuck near a placement (4,) lets go. [1]
+
+    Over falls from each of ``FALLS_FROM``; inf if it never stuck near it, 0 if it never let go.
+    """
+    found = [_fall(scene, placement, foretold, high, config) for high in FALLS_FROM]
+    return foretold * min(found)
+
+
+def _fall(
+    scene: Scene, placement: FloatArray, foretold: float, high: float, config: SimConfig | None
+) -> float:
+    there = rubbing(scene, high * foretold, config)
+    model, step = there.model, there.config.time_step
+    rubbed = np.flatnonzero(model.geom_contype != 0)
+    data = mj.MjData(model)
+    data.qpos[:] = there.start_positions(opened(there, placement, OPENED))[0]
+    data.ctrl[:] = there.closing_force
+    mj.mj_step(model, data, nstep=round(PRESSED / step))
+    held = there.placements(data.qpos)[0]
+    if _apart(there, placement, held) > NEAR_BY:
+        return np.inf
+    falls = round(FALLS / (_LOOK * step))
+    for share in high * (FALLS_TO / high) ** (np.arange(falls) / falls):
+        model.geom_friction[rubbed, 0] = share * foretold
+        mj.mj_step(model, data, nstep=_LOOK)
+        if _apart(there, held, there.placements(data.qpos)[0]) > SLIPS:
+            return float(share)
+    return 0.0
+
+
+def _apart(scene: Scene, one: FloatArray, other: FloatArray) -> float:
+    return max(float(far) for far in moved(scene, one, other))

@@ -10,7 +10,7 @@ import pytest
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from sim.grip.jam import BALANCED, held_at, held_by_engine, least_mu, residual
-from sim.grip.stick import STIFF, moved, opened, put_down, rubbing, stuck, threshold
+from sim.grip.stick import STIFF, moved, opened, put_down, released_at, rubbing, stuck, threshold
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import triangle
@@ -100,6 +100,15 @@ def test_a_threshold_far_from_the_one_foretold_is_said_to_be_so() -> None:
     wanted = math.tan(math.radians(15.0))
     assert threshold(scene, placement, 0.4 * wanted).sticks == np.inf
     assert threshold(scene, placement, 2.5 * wanted).slips == 0.0
+
+
+@pytest.mark.parametrize("make", [lambda: on_a_wedge(15.0), lambda: on_a_turned_triangle(0.2)])
+def test_what_sticks_lets_go_at_the_same_friction(make) -> None:
+    scene, placement = make()
+    wanted = least_mu(held_at(scene, placement))
+    assert 0.97 * wanted < released_at(scene, placement, wanted) < 1.02 * wanted
+    assert released_at(scene, placement, 0.1 * wanted) == np.inf
+    assert released_at(scene, placement, 2.0 * wanted) == 0.0
 
 
 def test_creep_falls_as_impratio_grows() -> None:

@@ -1,0 +1,101 @@
+"""Physics judges sigma_first(mu): closings from both sides, attacks on the jams that limit it.
+
+    python -m experiments.jams [CASE ...] [--trials N] [--attacks N] [--settings]
+
+For the shipped cases, or those named. Exit code 1 if anything did not hold.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from experiments.cases.with_discs import physical_case
+from experiments.io.options import add_json, count, file_name, seed
+from experiments.io.progress import stage_bar
+from experiments.jams.document import jams_document, page
+from experiments.jams.run import Judged, judge
+from experiments.jams.settings import CHANGED, Changed, change
+from icage.case import Case
+from icage.errors import InputError
+from icage.formats.case_json import read_case
+from icage.formats.json_out import write_json
+from icage.formats.load import load
+from icage.formats.whole_files import whole_file
+from icage.kernels.compiled import long_job
+from models import CASES, HARD, grasp_cases
+
+
+def main() -> int:
+    """Command line."""
+    parser = argparse.ArgumentParser(prog="python -m experiments.jams", description=__doc__)
+    parser.add_argument("cases", metavar="CASE", nargs="*", help="case files (all that ship)")
+    parser.add_argument(
+        "--trials", metavar="N", type=count, default=60, help="closings from each side of a level"
+    )
+    parser.add_argument(
+        "--attacks", metavar="N", type=count, default=20, help="attacks beside a jam, each"
+    )
+    parser.add_argument("--seed", metavar="S", type=seed, default=0, help="of all random numbers")
+    parser.add_argument(
+        "--settings", action="store_true", help="repeat with other settings of the engine"
+    )
+    parser.add_argument("--markdown", metavar="FILE", type=file_name, help="the result as a page")
+    add_json(parser)
+    asked = parser.parse_args()
+    long_job()
+    named = {name: load(name) for name in asked.cases} if asked.cases else shipped()
+    rows: list[Judged] = []
+    skipped: list[tuple[str, str]] = []
+    with stage_bar() as report:
+        for k, (name, case) in enumerate(named.items()):
+            report("cases", k, len(named))
+            try:
+                rows.append(
+                    judge(name, physical_case(case), asked.trials, asked.attacks, asked.seed)
+                )
+            except InputError as error:
+                skipped.append((name, str(error)))
+        report("cases", len(named), len(named))
+        changed = [settled(name, rows) for name in CHANGED] if asked.settings else []
+    document = jams_document(rows, changed, skipped)
+    if asked.json is not None:
+        write_json(document, asked.json)
+    lines = list(page(document, f"python -m experiments.jams {' '.join(sys.argv[1:])}".rstrip()))
+    if asked.markdown is not None:
+        with whole_file(Path(asked.markdown)) as part:
+            part.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    if asked.json != "-":
+        print("\n".join(lines))
+    return 1 if document["failures"] else 0
+
+
+def shipped() -> dict[str, Case]:
+    """The solved problems, the hard ones, the tools' grasps."""
+    paths = {path.stem: path for path in sorted(CASES.glob("*.json"))}
+    paths |= {f"hard/{path.stem}": path for path in sorted(HARD.glob("*.json"))}
+    return {name: read_case(path) for name, path in (paths | grasp_cases()).items()}
+
+
+def settled(name: str, rows: list[Judged]) -> Changed:
+    """All jams and closings of a run with one setting changed."""
+    parts = [
+        change(
+            name,
+            row.physical,
+            [
+                (jam.jam.placement, jam.foretold, jam.measured.sticks)
+                for jam in row.jams
+                if jam.measured.sticks < float("inf")
+            ],
+            {level.mu: level for level in row.levels},
+            list(row.ends),
+        )
+        for row in rows
+    ]
+    return Changed.joined(name, parts)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,135 @@
+"""Closings with friction, from below sigma_first(mu) and from above, judged in the plan's measure.
+
+That measure is how far the middle of the fingers is from its place at the target and how far the
+hand is turned, both in the object's frame: not the centroid in the hand of replays and studies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+import numpy as np
+
+from experiments.cases.with_discs import PhysicalCase
+from icage.arrays import BoolArray, FloatArray
+from icage.friction.levels import FrictionLevel
+from icage.sampling import Box, SamplingError, draw_starts, safe_level
+from sim.closing.batch import close_many
+from sim.closing.step_check import DIVERGED, PINCHED, SETTLED
+from sim.grip.jam import held_by_engine, residual
+from sim.grip.stick import STIFF, moved, rubbing
+from sim.world.config import SimConfig
+
+Side = Literal["below", "above"]
+SIDES: Final[tuple[Side, ...]] = ("below", "above")
+
+LONGEST: Final = 4.0
+"""[s] Ten times what a closing takes; what still moves then swings about a place."""
+
+OFF_BALANCE: Final = 1e-3
+"""[drive_force] An end with a larger residual is not held by friction."""
+
+TRIES: Final = 40
+"""Times more hands are drawn for the upper side than are wanted of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """Closings from one side of one level; ``starts`` and ``ends`` (N, 4) in the case's unit.
+
+    Attributes
+    ----------
+    from_afar, in_target:
+        (N,) starts outside the tolerance of the target, ends within it.
+    settled:
+        (N,) came to rest; the others swung or moved when time was up.
+    position, angle:
+        (N,) [diameter], [rad] of the ends from the target.
+    residual:
+        (N,) [drive_force] what is off balance at the end; nan in the target.
+    penetration:
+        [diameter] of the deepest finger.
+    """
+
+    side: Side
+    mu: float
+    level: float
+    starts: FloatArray
+    ends: FloatArray
+    from_afar: BoolArray
+    in_target: BoolArray
+    settled: BoolArray
+    position: FloatArray
+    angle: FloatArray
+    residual: FloatArray
+    penetration: float
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    @property
+    def stray(self) -> BoolArray:
+        """(N,) ends that are neither in the target nor where friction holds."""
+        return ~self.in_target & ~(self.residual <= OFF_BALANCE)
+
+
+def draw(
+    physical: PhysicalCase, level: FrictionLevel, side: Side, count: int, rng: np.random.Generator
+) -> FloatArray:
+    """Placements (n, 4) of the guaranteed set on one side of a level; fewer or none if it is thin.
+
+    Below, a little below it, as guaranteed sets are drawn.
+    """
+    cage = physical.cage
+    if side == "above":
+        if level.sigma_first is None or level.jam is None:
+            return np.zeros((0, 4))
+        try:
+            rows = draw_starts(cage, "guaranteed", TRIES * count, rng).placements
+        except SamplingError:
+            return np.zeros((0, 4))
+        return rows[rows[:, 3] >= level.sigma_first][:count]
+    box = Box.around(cage, "guaranteed", safe_level(level.sigma_first, cage.sigma_0))
+    try:
+        return draw_starts(cage, "guaranteed", count, rng, box=box).placements
+    except SamplingError:
+        return np.zeros((0, 4))
+
+
+def close_from(
+    physical: PhysicalCase,
+    level: FrictionLevel,
+    side: Side,
+    starts: FloatArray,
+    config: SimConfig | None = None,
+    threads: int = 1,
+) -> Ends:
+    """Close from placements (N, 4) at the level's coefficient, and look where each ends."""
+    cage, mu, near = physical.cage, level.mu, level.tolerance
+    usual = SimConfig(impratio=STIFF) if config is None else config
+    brief = replace(usual, max_time=LONGEST)
+    scene = rubbing(physical.simulated.scene(), mu, brief)
+    closed = close_many(scene, starts, threads)
+    target = cage.target_placement.as_array()
+    shift, turn = moved(scene, target, closed.end)
+    began_off, began_turned = moved(scene, target, closed.start)
+    lost = np.isin(closed.ending, (DIVERGED, PINCHED))
+    there = (shift <= near.position) & (turn <= near.angle) & ~lost
+    off = np.full(len(starts), np.nan)
+    for i in np.flatnonzero(~there & ~lost).tolist():
+        off[i] = residual(held_by_engine(scene, closed.end[i]), mu)
+    return Ends(
+        side=side,
+        mu=mu,
+        level=np.inf if level.sigma_first is None else level.sigma_first,
+        starts=closed.start,
+        ends=closed.end,
+        from_afar=(began_off > near.position) | (began_turned > near.angle),
+        in_target=there,
+        settled=closed.ending == SETTLED,
+        position=shift,
+        angle=turn,
+        residual=off,
+        penetration=float(closed.penetration_max.max(initial=0.0)),
+    )
