@@ -11,14 +11,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from experiments.cases.with_discs import physical_case
 from experiments.io.options import add_json, count, file_name, seed
 from experiments.io.progress import stage_bar
 from experiments.jams.document import jams_document, page
-from experiments.jams.run import Judged, judge
-from experiments.jams.settings import CHANGED, Changed, change
+from experiments.jams.many import judge_many, with_settings
 from icage.case import Case
-from icage.errors import InputError
 from icage.formats.case_json import read_case
 from icage.formats.json_out import write_json
 from icage.formats.load import load
@@ -46,19 +43,9 @@ def main() -> int:
     asked = parser.parse_args()
     long_job()
     named = {name: load(name) for name in asked.cases} if asked.cases else shipped()
-    rows: list[Judged] = []
-    skipped: list[tuple[str, str]] = []
     with stage_bar() as report:
-        for k, (name, case) in enumerate(named.items()):
-            report("cases", k, len(named))
-            try:
-                rows.append(
-                    judge(name, physical_case(case), asked.trials, asked.attacks, asked.seed)
-                )
-            except InputError as error:
-                skipped.append((name, str(error)))
-        report("cases", len(named), len(named))
-        changed = [settled(name, rows) for name in CHANGED] if asked.settings else []
+        rows, skipped = judge_many(named, asked.trials, asked.attacks, asked.seed, report)
+        changed = with_settings(rows, report) if asked.settings else []
     document = jams_document(rows, changed, skipped)
     if asked.json is not None:
         write_json(document, asked.json)
@@ -76,25 +63,6 @@ def shipped() -> dict[str, Case]:
     paths = {path.stem: path for path in sorted(CASES.glob("*.json"))}
     paths |= {f"hard/{path.stem}": path for path in sorted(HARD.glob("*.json"))}
     return {name: read_case(path) for name, path in (paths | grasp_cases()).items()}
-
-
-def settled(name: str, rows: list[Judged]) -> Changed:
-    """All jams and closings of a run with one setting changed."""
-    parts = [
-        change(
-            name,
-            row.physical,
-            [
-                (jam.jam.placement, jam.foretold, jam.measured.sticks)
-                for jam in row.jams
-                if jam.measured.sticks < float("inf")
-            ],
-            {level.mu: level for level in row.levels},
-            list(row.ends),
-        )
-        for row in rows
-    ]
-    return Changed.joined(name, parts)
 
 
 if __name__ == "__main__":
