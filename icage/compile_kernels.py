@@ -120,6 +120,7 @@ def _sublevels() -> None:
 
 def _friction() -> None:
     icage.plan(_case("T_best")).friction(0.3)
+    icage.plan(_case("disc_Y")).friction(0.3)
 
 
 def _case(name: str) -> icage.Case:

@@ -20,6 +20,7 @@ from icage.cells.work import CageWork, work_of
 from icage.checks import a_number
 from icage.errors import InputError
 from icage.friction.contacts import contacts_of
+from icage.friction.disc_jams import disc_jams
 from icage.friction.kernels.far import Near
 from icage.friction.kernels.jams import LeastJam, least_jam
 from icage.geometry.near_frame import NearFrame
@@ -111,7 +112,7 @@ def friction_levels(
     Parameters
     ----------
     cage:
-        A cage of point fingers, planned by the cells.
+        Of point or disc fingers, planned by the cells.
     mus:
         [1] Coefficients of Coulomb friction, 0 or more. At 0 the level is the plan's own.
     tolerance:
@@ -120,7 +121,9 @@ def friction_levels(
     Raises
     ------
     InputError:
-        Disc fingers; a coefficient that is negative or no number.
+        A coefficient that is negative or no number.
+    GeometryError:
+        Disc fingers on an object that has no true curve: two parts of it are just two radii apart.
     MethodError:
         The cage was planned by the contact space: plan it by the cells.
 
@@ -134,11 +137,6 @@ def friction_levels(
     >>> [round(level.sigma_first, 4) for level in friction_levels(cage, (0.0, 0.3))]
     [0.866, 0.5001]
     """
-    if cage.finger_radius > 0.0:
-        raise InputError(
-            f"friction is computed for point fingers only; the fingers of this cage are discs of "
-            f"radius {cage.finger_radius:g}"
-        )
     asked = tuple(_checked(mu) for mu in mus)
     chosen = JamTolerance() if tolerance is None else tolerance
     work = work_of(cage)
@@ -162,6 +160,8 @@ def _checked(mu: float) -> float:
 
 def _limited(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
     """The same, lowered to the least far jam of its coefficient."""
+    if cage.finger_radius > 0.0:
+        return _limited_for_discs(cage, work, level)
     found = work.search
     free_space = found.free_space
     size = free_space.pieces.diameter
@@ -179,6 +179,19 @@ def _limited(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
     return replace(level, sigma_first=float(least.sigma), jam=_jam(cage, work, least))
 
 
+def _limited_for_discs(cage: Cage, work: CageWork, level: FrictionLevel) -> FrictionLevel:
+    near = _near(cage, work, level.tolerance)
+    jams = disc_jams(cage, work, near, touching_subsets(len(work.search.free_space.z)))
+    if level.sigma_first is None or jams.known < level.sigma_first * (1.0 - 2.0 * LEVEL):
+        # the inner polygon lets go a little earlier than the true curve: beyond nothing is known
+        level = replace(level, sigma_first=jams.known if np.isfinite(jams.known) else None)
+    below = jams.known if level.jam is None else level.jam.sigma
+    least = jams.least(level.mu, below)
+    if not np.isfinite(least.sigma):
+        return level
+    return replace(level, sigma_first=float(least.sigma), jam=_jam(cage, work, least))
+
+
 def touching_subsets(fingers: int) -> BoolArray:
     """(k, fingers) every way in which two fingers or more touch, the fewest first."""
     rows = [row for row in product((True, False), repeat=fingers) if sum(row) >= 2]
@@ -188,7 +201,7 @@ def touching_subsets(fingers: int) -> BoolArray:
 def _near(cage: Cage, work: CageWork, tolerance: JamTolerance) -> Near:
     """The hands that count as the target, in the frame of the pieces."""
     free_space = work.search.free_space
-    size = free_space.pieces.diameter
+    size = cage.outline.diameter  # a grown polygon has a larger one
     fingers = NearFrame.of(cage.outline).into(cage.contacts) - free_space.origin
     at, ahead = fingers.mean(axis=0), fingers[1] - fingers[0]
     ahead = ahead / np.hypot(ahead[0], ahead[1])

@@ -9,9 +9,11 @@ import numpy as np
 
 from icage.cage import Cage
 from icage.cells.membership import TARGET, query
+from icage.errors import GraspError
 from icage.friction.levels import FrictionLevel, friction_levels
 from icage.outline import Outline
 from icage.planner import plan
+from tests.oracles import disc_jams
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.jams import (
     residual,
@@ -70,6 +72,14 @@ def drawn_round(seed: int) -> tuple[Target, float]:
     raise RuntimeError("no grasp on 50 round outlines")
 
 
+def drawn_disc(seed: int) -> tuple[Target, float]:
+    """The same for disc fingers with a radius of 1 to 8 % of the diameter."""
+    rng = np.random.default_rng([7, seed])
+    radius = float(rng.uniform(0.01, 0.08))
+    target = random_target(rng, sorted(FAMILIES)[seed % len(FAMILIES)], radius)
+    return target, float(np.exp(rng.uniform(np.log(0.02), 0.0)))
+
+
 def compared(seed: int) -> Compared:
     """Level and samples of one target."""
     target, mu = drawn(seed)
@@ -86,6 +96,44 @@ def compared_on(vertices: Floats, contacts: Floats, mu: float, an_edge: int = AN
         return Compared(level, sampled, 0.0, True)
     ring = Ring.of(cage.outline.vertices)
     left = residual(ring, found.jam.contacts, mu, OFF * ring.diameter)
+    answer = query(cage, found.jam.placement.as_array()[None])
+    return Compared(level, sampled, left, bool(answer.verdict[0] == TARGET))
+
+
+def compared_disc(seed: int, an_element: int = 13) -> Compared | None:
+    """Level and samples of one target of disc fingers; None where the plan finds no cage."""
+    target, mu = drawn_disc(seed)
+    try:
+        cage = plan(Outline(target.vertices), target.contacts, target.radius)
+    except GraspError:
+        return None
+    if cage.status == "not_a_cage":
+        return None
+    return compared_disc_on(cage, mu, an_element)
+
+
+def compared_disc_on(cage: Cage, mu: float, an_element: int = 13) -> Compared:
+    """The same for a cage, with so many contacts on an edge or an arc."""
+    (found,) = friction_levels(cage, [mu])
+    ring = Ring.of(cage.outline.vertices)
+    curve = disc_jams.Curve.of(ring, cage.finger_radius)
+    first = math.inf if cage.sigma_first is None else cage.sigma_first
+    below = first if math.isfinite(first) else cage.sigma_largest or math.inf
+    around = np.empty((0, 2)) if found.jam is None else found.jam.contacts
+    every = curve.contacts(an_element, around)
+    hand, phi = cage.hand.unit_fingers, math.atan(mu)
+    hands = np.concatenate(
+        [
+            disc_jams.two_finger_jams(curve, hand, every, phi, below),
+            disc_jams.three_finger_jams(curve, hand, every, phi, below),
+        ]
+    )
+    allowed = found.tolerance
+    sampled = min(first, _least_in_the_basin(cage, hands, allowed.position, allowed.angle))
+    level = math.inf if found.sigma_first is None else found.sigma_first
+    if found.jam is None:
+        return Compared(level, sampled, 0.0, True)
+    left = disc_jams.residual(curve, found.jam.contacts, mu)
     answer = query(cage, found.jam.placement.as_array()[None])
     return Compared(level, sampled, left, bool(answer.verdict[0] == TARGET))
 

@@ -137,10 +137,14 @@ def test_a_hand_that_never_lets_go_may_have_no_level() -> None:
     assert cage.sigma_0 < (some.sigma_first or 0.0) < (cage.sigma_largest or 0.0)
 
 
-def test_disc_fingers_are_refused_by_name() -> None:
+def test_disc_fingers_have_a_curve_of_their_own() -> None:
     cage = icage.plan(icage.load(CASES / "disc_Y.json"))
-    with pytest.raises(InputError, match="point fingers only"):
-        cage.friction(0.1)
+    found = friction_levels(cage, MUS)
+    assert found[0].sigma_first == cage.sigma_first
+    assert found[-1].jam is not None
+    levels = ratios(cage, found)
+    assert (np.diff(levels) <= 0.0).all()
+    assert levels[-1] < 0.995 * levels[0]
 
 
 def test_the_contact_space_answers_no_friction() -> None:

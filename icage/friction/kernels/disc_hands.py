@@ -1,0 +1,178 @@
+"""The hands of disc fingers on chosen features, as a convex polygon that leaves none out.
+
+Parts of arcs stand as their chords. A hand on the true arcs differs from one on the chords by no
+more than their sagittas allow (``Slack``), and all that bounds the polygon is moved back by that.
+[docs/theory.md, Sec. 10]
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from icage.friction.kernels.disc_features import ARC
+from icage.friction.kernels.polygon import clip, finger_row
+from icage.kernels.compiled import compiled
+
+OUTSIDE = 3
+"""Vertices that one free finger may be held off."""
+
+COLUMNS = 2 + 3 * OUTSIDE
+"""Columns of the state of a finger: direction and half turn of its part of an arc; then, for each
+vertex that it is held off, the number of that (-1: none), and a range of directions from it."""
+
+
+class Slack(NamedTuple):
+    """How far a hand on the true arcs may be from one on the chords.
+
+    ``sag`` [unit]: both first fingers together; ``shift`` [unit]: any finger; ``w``: of w.
+    """
+
+    sag: float
+    shift: float
+    w: float
+
+
+@compiled
+def slack_of(z, finger, chosen, contacts, state):
+    """The slack of the first two fingers in contact, from which the hand is built."""
+    i, j = finger[0], finger[1]
+    side_x = z[j, 0] - z[i, 0]
+    side_y = z[j, 1] - z[i, 1]
+    side = np.hypot(side_x, side_y)
+    sag = 0.0
+    for k in range(2):
+        sag += sagitta(contacts, chosen[k], state[finger[k]])
+    far = 1.0
+    for f in range(len(z)):
+        for k in range(2):
+            x = z[f, 0] - z[finger[k], 0]
+            y = z[f, 1] - z[finger[k], 1]
+            far = max(far, np.hypot(x, y) / side)
+    return Slack(sag, sag * far, sag / side)
+
+
+@compiled
+def sagitta(contacts, feature, state):
+    """How far the arc of a finger's feature lies off its chord; 0 for what is no arc."""
+    if contacts.kind[feature] != ARC:
+        return 0.0
+    return 2.0 * contacts.radius * math.sin(0.5 * state[1]) ** 2
+
+
+@compiled
+def place_of(contacts, feature, state, place):
+    """Fill in a point and the side that starts there: an edge, a corner, a chord of an arc."""
+    for c in range(4):
+        place[c] = contacts.place[feature, c]
+    if contacts.kind[feature] == ARC:
+        r = contacts.radius
+        first = state[0] - state[1]
+        last = state[0] + state[1]
+        place[0] += r * math.cos(first)
+        place[1] += r * math.sin(first)
+        place[2] = r * (math.cos(last) - math.cos(first))
+        place[3] = r * (math.sin(last) - math.sin(first))
+
+
+@compiled
+def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thick, room):
+    """Corners of the hands, into ``room.polygon``; returns their number, 0 if there is none."""
+    polygon, spare, place = room.polygon, room.spare, room.place
+    for k in range(count):
+        place_of(contacts, chosen[k], state[finger[k]], place[k])
+    i, j = finger[0], finger[1]
+    side_x = z[j, 0] - z[i, 0]
+    side_y = z[j, 1] - z[i, 1]
+    square = side_x * side_x + side_y * side_y
+    for k in range(4):
+        s = 1.0 if k == 1 or k == 2 else 0.0
+        u = 1.0 if k >= 2 else 0.0
+        x = place[0, 0] + s * place[0, 2]
+        y = place[0, 1] + s * place[0, 3]
+        gap_x = place[1, 0] + u * place[1, 2] - x
+        gap_y = place[1, 1] + u * place[1, 3] - y
+        w_x = (gap_x * side_x + gap_y * side_y) / square
+        w_y = (gap_y * side_x - gap_x * side_y) / square
+        polygon[k, 0] = x - (w_x * z[i, 0] - w_y * z[i, 1])
+        polygon[k, 1] = y - (w_x * z[i, 1] + w_y * z[i, 0])
+        polygon[k, 2] = w_x
+        polygon[k, 3] = w_y
+    n = 4
+    row = room.row
+    loose = thick + slack.shift
+    for k in range(2, count):
+        own = loose + sagitta(contacts, chosen[k], state[finger[k]])
+        n = _on_feature(place[k], z[finger[k]], own, row, polygon, n, spare)
+        if n == 0:
+            return 0
+    for f in range(len(z)):
+        piece = cell[f]
+        for slot in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            v = pieces.slot_vertex[slot]
+            n_x = pieces.normal_x[slot]
+            n_y = pieces.normal_y[slot]
+            finger_row(row, n_x, n_y, z[f, 0], z[f, 1])
+            row[4] = loose - n_x * pieces.x[v] - n_y * pieces.y[v]
+            n = _keep(polygon, n, row, spare)
+            if n == 0:
+                return 0
+        for k in range(OUTSIDE):
+            if state[f, 2 + 3 * k] >= 0.0:
+                n = _held_off(z[f], contacts, state[f], k, loose, row, polygon, n, spare)
+                if n == 0:
+                    return 0
+    return n
+
+
+@compiled
+def _on_feature(place, z, loose, row, polygon, n, spare):
+    """Keep the hands whose finger at z is within ``loose`` of an edge, a chord or a corner."""
+    length = np.hypot(place[2], place[3])
+    t_x = 1.0
+    t_y = 0.0
+    if length > 0.0:
+        t_x = place[2] / length
+        t_y = place[3] / length
+    for k in range(4):
+        # along the edge, back from its end, and to both sides of it
+        n_x = t_x if k == 0 else -t_x if k == 1 else -t_y if k == 2 else t_y
+        n_y = t_y if k == 0 else -t_y if k == 1 else t_x if k == 2 else -t_x
+        finger_row(row, n_x, n_y, z[0], z[1])
+        row[4] = loose - n_x * place[0] - n_y * place[1]
+        if k == 1:
+            row[4] += length
+        n = _keep(polygon, n, row, spare)
+    return n
+
+
+@compiled
+def _held_off(z, contacts, state, k, loose, row, polygon, n, spare):
+    """Keep the hands whose finger at z is outside the arc round a vertex, in a range of directions.
+
+    Outside of the arc there is beyond its chord; the range is a sector of less than half a turn.
+    """
+    v = int(state[2 + 3 * k])
+    middle = state[3 + 3 * k]
+    half = state[4 + 3 * k]
+    x, y = contacts.apex[v, 0], contacts.apex[v, 1]
+    for turn in (0.0, 0.5 * math.pi - half, half - 0.5 * math.pi):
+        n_x = math.cos(middle + turn)
+        n_y = math.sin(middle + turn)
+        finger_row(row, n_x, n_y, z[0], z[1])
+        row[4] = loose - n_x * x - n_y * y
+        if turn == 0.0:
+            row[4] -= contacts.radius * math.cos(half)
+        n = _keep(polygon, n, row, spare)
+    return n
+
+
+@compiled
+def _keep(polygon, n, row, spare):
+    """Clip a polygon where it is."""
+    m = clip(polygon, n, row, spare)
+    polygon[:m] = spare[:m]
+    return m
