@@ -13,10 +13,12 @@ from typing import Final
 import numpy as np
 
 from experiments.cases.with_discs import PhysicalCase
+from experiments.jams.closings import OFF_BALANCE
 from icage.arrays import FloatArray
 from icage.friction.levels import Jam
 from icage.kernels.locate import depth_inside
 from sim.closing.batch import close_many
+from sim.closing.step_check import SETTLED
 from sim.grip.jam import held_at, held_by_engine, least_mu, residual
 from sim.grip.stick import Threshold, moved, opened, released_at, rubbing, threshold
 from sim.world.config import SimConfig
@@ -34,6 +36,15 @@ OPENED: Final = (1e-3, 5e-3)
 STAYS: Final = 3.0 * BESIDE
 """[diameter, rad] A hand that ends this near to the jam has stuck beside it."""
 
+NEAR: Final = 0.05
+"""[1] A coefficient this near to the one foretold is the same."""
+
+DECIDED: Final = 1e-4
+"""[1] A jam of a level holds at that level's coefficient, to this."""
+
+LEAST: Final = 1e-3
+"""[1] Less friction than this is none to an engine."""
+
 _TRIES: Final = 200
 
 
@@ -41,13 +52,15 @@ _TRIES: Final = 200
 class Attacked:
     """Closings from beside a jam at one coefficient: of ``trials`` so many stuck beside it.
 
-    ``residual`` [drive_force] is the largest of those that ended outside the target's tolerance,
-    ``moved`` the median and largest distance of the ends from the jam [diameter or rad].
+    ``residual`` [drive_force] is the largest at an end, ``stray`` came to rest where it is more
+    than ``OFF_BALANCE``; ``moved`` is the median and the largest distance of the ends from the jam
+    [diameter or rad].
     """
 
     mu: float
     trials: int
     stuck: int
+    stray: int
     residual: float
     moved: tuple[float, float]
     penetration: float
@@ -71,8 +84,12 @@ class JamTested:
 
     @property
     def off(self) -> float:
-        """[1] Least friction at which it was seen to hold, over what was foretold, less 1."""
-        return min(self.measured.sticks, self.released) / self.foretold - 1.0
+        """[1] Friction at which it was seen to hold, over what was foretold, less 1.
+
+        Where it is put down; if it slides there up to more than ``NEAR`` above, where it lets go.
+        """
+        put_down = self.measured.sticks / self.foretold - 1.0
+        return put_down if put_down <= NEAR else min(put_down, self.released / self.foretold - 1.0)
 
 
 def beside(scene: Scene, jam: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
@@ -102,10 +119,12 @@ def attacked(scene: Scene, jam: FloatArray, starts: FloatArray, mu: float) -> At
     closed = close_many(there, starts, 1)
     shift, turn = moved(there, jam, closed.end)
     away = np.maximum(shift, turn)
-    off = [residual(held_by_engine(there, end), mu) for end in closed.end]
+    rest = closed.ending == SETTLED
+    off = np.array([residual(held_by_engine(there, end), mu) for end in closed.end[rest]])
     return Attacked(
-        mu, len(starts), int((away < STAYS).sum()), max(off, default=0.0),
-        (float(np.median(away)), float(away.max(initial=0.0))),
+        mu, len(starts), int((away < STAYS).sum()), int((off > OFF_BALANCE).sum()),
+        float(off.max(initial=0.0)),
+        (float(np.median(away)) if len(away) else 0.0, float(away.max(initial=0.0))),
         float(closed.penetration_max.max(initial=0.0)),
     )  # fmt: skip
 
@@ -117,11 +136,17 @@ def judge_jam(
     attacks: int,
     rng: np.random.Generator,
     config: SimConfig | None = None,
-) -> JamTested:
-    """Threshold and attacks of one jam."""
+) -> JamTested | None:
+    """Threshold and attacks of one jam; None if no friction holds there up to what it limits.
+
+    A level for discs may be lower than its least jam: what the search has not decided in time
+    counts as one, and is none.
+    """
     scene = physical.simulated.scene()
     place = jam.placement.as_array()
     foretold = least_mu(held_at(scene, place))
+    if foretold > found_at[0] * (1.0 + DECIDED) or foretold < LEAST:
+        return None
     starts = beside(scene, place, attacks, rng)
     return JamTested(
         jam,

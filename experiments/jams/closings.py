@@ -16,9 +16,10 @@ from icage.arrays import BoolArray, FloatArray
 from icage.friction.levels import FrictionLevel
 from icage.sampling import Box, SamplingError, draw_starts, safe_level
 from sim.closing.batch import close_many
-from sim.closing.step_check import DIVERGED, PINCHED, SETTLED
+from sim.closing.outcome import ClosingOutcomes
+from sim.closing.step_check import DIVERGED, PINCHED, SETTLED, TIMED_OUT
 from sim.grip.jam import held_by_engine, residual
-from sim.grip.stick import STIFF, moved, rubbing
+from sim.grip.stick import RUBBING, moved, rubbing
 from sim.world.config import SimConfig
 
 Side = Literal["below", "above"]
@@ -32,6 +33,11 @@ OFF_BALANCE: Final = 1e-3
 
 TRIES: Final = 40
 """Times more hands are drawn for the upper side than are wanted of it."""
+
+
+GENTLER: Final = 0.1
+"""[1] Of the drive force, for closings that did not come to rest, or whose hand was pushed open
+past the level: fingers sink in by up to 5e-4 diameters when they strike, in proportion to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +54,8 @@ class Ends:
         (N,) [diameter], [rad] of the ends from the target.
     residual:
         (N,) [drive_force] what is off balance at the end; nan in the target.
+    repeated:
+        How many closed again at ``GENTLER``, which is what counts of them.
     penetration:
         [diameter] of the deepest finger.
     """
@@ -63,6 +71,7 @@ class Ends:
     position: FloatArray
     angle: FloatArray
     residual: FloatArray
+    repeated: int
     penetration: float
 
     def __len__(self) -> int:
@@ -70,8 +79,8 @@ class Ends:
 
     @property
     def stray(self) -> BoolArray:
-        """(N,) ends that are neither in the target nor where friction holds."""
-        return ~self.in_target & ~(self.residual <= OFF_BALANCE)
+        """(N,) at rest neither in the target nor where friction holds."""
+        return self.settled & ~self.in_target & ~(self.residual <= OFF_BALANCE)
 
 
 def draw(
@@ -107,10 +116,16 @@ def close_from(
 ) -> Ends:
     """Close from placements (N, 4) at the level's coefficient, and look where each ends."""
     cage, mu, near = physical.cage, level.mu, level.tolerance
-    usual = SimConfig(impratio=STIFF) if config is None else config
-    brief = replace(usual, max_time=LONGEST)
-    scene = rubbing(physical.simulated.scene(), mu, brief)
+    top = np.inf if level.sigma_first is None or side == "above" else level.sigma_first
+    usual = replace(RUBBING if config is None else config, max_time=LONGEST)
+    scene = rubbing(physical.simulated.scene(), mu, usual)
     closed = close_many(scene, starts, threads)
+    again = np.flatnonzero(_pushed_open(closed, top) | (closed.ending == TIMED_OUT))
+    if len(again):
+        slow = close_many(rubbing(scene, mu, gentler(usual)), starts[again], threads)
+        places = np.arange(len(starts))
+        places[again] = len(starts) + np.arange(len(again))
+        closed = ClosingOutcomes.joined([closed, slow]).picked(places)
     target = cage.target_placement.as_array()
     shift, turn = moved(scene, target, closed.end)
     began_off, began_turned = moved(scene, target, closed.start)
@@ -131,5 +146,21 @@ def close_from(
         position=shift,
         angle=turn,
         residual=off,
+        repeated=len(again),
         penetration=float(closed.penetration_max.max(initial=0.0)),
     )
+
+
+def gentler(config: SimConfig) -> SimConfig:
+    """The same at a tenth of the force, with the time that it takes."""
+    return replace(
+        config,
+        drive_force=GENTLER * config.drive_force,
+        still_speed=GENTLER * config.still_speed,
+        max_time=config.max_time / GENTLER,
+    )
+
+
+def _pushed_open(closed: ClosingOutcomes, top: float) -> BoolArray:
+    """Which hands (N,) were at any step as wide as a level [unit]: they have left what it says."""
+    return closed.sigma_rise_max * closed.start[:, 3] >= top

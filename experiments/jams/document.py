@@ -14,7 +14,8 @@ from experiments.io.versions import versions
 from experiments.jams.beside import Attacked, JamTested
 from experiments.jams.closings import Ends
 from experiments.jams.run import Judged
-from experiments.jams.settings import USUAL, Changed
+from experiments.jams.settings import Changed
+from sim.grip.stick import RUBBING
 
 FORMAT: Final = "icage-jams/1"
 
@@ -26,7 +27,7 @@ def jams_document(
     return {
         "format": FORMAT,
         "versions": versions(),
-        "config": asdict(USUAL),
+        "config": asdict(RUBBING),
         "cases": [_case(row) for row in rows],
         "settings": [_changed(one) for one in changed],
         "skipped": [{"case": name, "why": why} for name, why in skipped],
@@ -52,6 +53,7 @@ def _case(row: Judged) -> dict[str, Any]:
         ],
         "closings": [ends_document(ends) for ends in row.ends],
         "jams": [_jam(row, jam) for jam in row.jams],
+        "untested_jams": row.untested,
     }
 
 
@@ -67,6 +69,7 @@ def ends_document(ends: Ends) -> dict[str, Any]:
         "target": int(there.sum()),
         "target_rate": wilson(int(there.sum()), len(ends)),
         "settled": int(ends.settled.sum()),
+        "repeated": ends.repeated,
         "stray": int(ends.stray.sum()),
         "residual": float(beyond.max(initial=0.0)),
         "position_error": float(ends.position[there].max(initial=0.0)),
@@ -101,6 +104,7 @@ def _attacked(run: Attacked) -> dict[str, Any]:
         "stuck_rate": wilson(run.stuck, run.trials),
         "median_moved": run.moved[0],
         "largest_moved": run.moved[1],
+        "stray": run.stray,
         "residual": run.residual,
         "penetration": run.penetration,
     }

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from experiments.cases.with_discs import PhysicalCase
-from experiments.jams.beside import JamTested, judge_jam
+from experiments.jams.beside import NEAR, JamTested, judge_jam
 from experiments.jams.closings import SIDES, Ends, close_from, draw
 from icage.friction.levels import FrictionLevel, Jam, friction_levels
 from sim.grip.stick import moved
@@ -20,10 +20,6 @@ MUS: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8)
 
 SAME: Final = 1e-6
 """[diameter, rad] Jams nearer to one another are one."""
-
-MOST_OFF: Final = 0.05
-"""[1] A jam that holds at so much less friction than foretold is a failure. That it takes more may
-be: it can hold, and need not (``sim.grip.stick``)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +32,8 @@ class Judged:
     levels: tuple[FrictionLevel, ...]
     ends: tuple[Ends, ...]
     jams: tuple[JamTested, ...]
+    untested: int
+    """Jams that limit a level and hold at no friction up to its own, or at next to none."""
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -61,11 +59,13 @@ def judge(
             starts = draw(physical, level, side, trials, rng)
             if len(starts):
                 ends.append(close_from(physical, level, side, starts, config))
+    found = limiting(physical, levels)
     jams = [
         judge_jam(physical, jam, found_at, attacks, streams[3 * k + 2], config)
-        for k, (jam, found_at) in enumerate(limiting(physical, levels))
+        for k, (jam, found_at) in enumerate(found)
     ]
-    return Judged(name, physical, seed, levels, tuple(ends), tuple(jams))
+    known = tuple(jam for jam in jams if jam is not None)
+    return Judged(name, physical, seed, levels, tuple(ends), known, len(jams) - len(known))
 
 
 def below_levels(
@@ -114,13 +114,14 @@ def _failures(done: Judged) -> Iterator[str]:
                 f"sigma_first({one.mu:g}) ended where nothing holds (seed {done.seed})"
             )
     for jam in done.jams:
-        if jam.off < -MOST_OFF:
+        if jam.off < -NEAR:
             yield (
                 f"{done.name}: the jam of {jam.found_at[0]:g} is foretold to hold from "
                 f"{jam.foretold:.5g} on and holds at {jam.foretold * (1.0 + jam.off):.5g}"
             )
-        if jam.weaker.stuck:
-            yield (
-                f"{done.name}: beside the jam of {jam.found_at[0]:g}, {jam.weaker.stuck} of "
-                f"{jam.weaker.trials} stuck at {jam.weaker.mu:.5g}, where it does not hold"
-            )
+        for run in (jam.weaker, jam.stronger):
+            if run.stray:
+                yield (
+                    f"{done.name}: beside the jam of {jam.found_at[0]:g}, {run.stray} of "
+                    f"{run.trials} came to rest at {run.mu:.5g} where nothing holds"
+                )

@@ -12,25 +12,24 @@ from experiments.cases.with_discs import PhysicalCase
 from experiments.jams.closings import Ends, close_from
 from icage.friction.levels import FrictionLevel
 from icage.hand import Placement
-from sim.grip.stick import STIFF, moved, threshold
+from sim.grip.stick import RUBBING, moved, threshold
 from sim.world.config import SimConfig
 
-USUAL: Final = SimConfig(impratio=STIFF)
-
 CHANGED: Final[dict[str, SimConfig]] = {
-    "half the step": replace(USUAL, time_step=0.5 * USUAL.time_step),
-    "impratio 1000": replace(USUAL, impratio=1e3),
-    "impratio 100": replace(USUAL, impratio=1e2),
+    "half the step": replace(RUBBING, time_step=0.5 * RUBBING.time_step),
+    "impratio 1000": replace(RUBBING, impratio=1e3),
+    "impratio 100": replace(RUBBING, impratio=1e2),
     "solver 10 times as long": replace(
-        USUAL, solver_iterations=10 * USUAL.solver_iterations, solver_tolerance=1e-13
+        RUBBING, solver_iterations=10 * RUBBING.solver_iterations, solver_tolerance=1e-13
     ),
-    "contacts half as stiff": replace(USUAL, contact_solref=2.0 * USUAL.contact_solref),
-    "a third of the drive": replace(USUAL, drive_force=USUAL.drive_force / 3.0),
+    "damping ratio 2": replace(RUBBING, contact_damping=2.0),
+    "contacts half as stiff": replace(RUBBING, contact_solref=2.0 * RUBBING.contact_solref),
+    "a third of the drive": replace(RUBBING, drive_force=RUBBING.drive_force / 3.0),
     "a tenth of the inertia": replace(
-        USUAL,
-        object_damping=10.0 * USUAL.object_damping,
-        finger_damping=10.0 * USUAL.finger_damping,
-        drive_force=10.0 * USUAL.drive_force,
+        RUBBING,
+        object_damping=10.0 * RUBBING.object_damping,
+        finger_damping=10.0 * RUBBING.finger_damping,
+        drive_force=10.0 * RUBBING.drive_force,
     ),
 }
 """One thing each against the usual ones. Cones are elliptic throughout: in the plane they are
