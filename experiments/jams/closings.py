@@ -26,7 +26,7 @@ Side = Literal["below", "above"]
 SIDES: Final[tuple[Side, ...]] = ("below", "above")
 
 LONGEST: Final = 4.0
-"""[s] Ten times what a closing takes; what still moves then swings about a place."""
+"""[s] Ten times what a closing takes; what still moves then is given ten times as long."""
 
 OFF_BALANCE: Final = 1e-3
 """[drive_force] An end with a larger residual is not held by friction."""
@@ -55,7 +55,7 @@ class Ends:
     residual:
         (N,) [drive_force] what is off balance at the end; nan in the target.
     repeated:
-        How many closed again at ``GENTLER``, which is what counts of them.
+        How many closed again, for ten times as long or at ``GENTLER``; that is what counts of them.
     penetration:
         [diameter] of the deepest finger.
     """
@@ -120,12 +120,18 @@ def close_from(
     usual = replace(RUBBING if config is None else config, max_time=LONGEST)
     scene = rubbing(physical.simulated.scene(), mu, usual)
     closed = close_many(scene, starts, threads)
-    again = np.flatnonzero(_pushed_open(closed, top) | (closed.ending == TIMED_OUT))
-    if len(again):
-        slow = close_many(rubbing(scene, mu, gentler(usual)), starts[again], threads)
-        places = np.arange(len(starts))
-        places[again] = len(starts) + np.arange(len(again))
-        closed = ClosingOutcomes.joined([closed, slow]).picked(places)
+    repeated = np.zeros(len(starts), dtype=np.bool_)
+    longer = replace(usual, max_time=LONGEST / GENTLER)
+    for patient in (longer, gentler(usual)):
+        open_now = _pushed_open(closed, top)
+        late = closed.ending == TIMED_OUT
+        again = np.flatnonzero(late & ~open_now if patient is longer else late | open_now)
+        if len(again):
+            repeated[again] = True
+            later = close_many(rubbing(scene, mu, patient), starts[again], threads)
+            places = np.arange(len(starts))
+            places[again] = len(starts) + np.arange(len(again))
+            closed = ClosingOutcomes.joined([closed, later]).picked(places)
     target = cage.target_placement.as_array()
     shift, turn = moved(scene, target, closed.end)
     began_off, began_turned = moved(scene, target, closed.start)
@@ -146,7 +152,7 @@ def close_from(
         position=shift,
         angle=turn,
         residual=off,
-        repeated=len(again),
+        repeated=int(repeated.sum()),
         penetration=float(closed.penetration_max.max(initial=0.0)),
     )
 
