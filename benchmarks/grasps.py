@@ -24,7 +24,7 @@ from icage import Case, Outline
 from icage.errors import GraspError
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.of_case import best_of_case
-from icage.grasps.planned import score
+from icage.grasps.scores import score
 from icage.grasps.wanted import Wanted
 from icage.kernels.compiled import machine_code_at_once
 
@@ -75,7 +75,7 @@ def searched(outline: Outline, radius: float) -> dict[str, float]:
         "seconds": seconds,
         "candidates_per_second": found.compared / seconds,
         "grasps": len(found.cages),
-        "best": score(found.cages[0], "first") if found.cages else 0.0,
+        "best": score(found.cages[0], Wanted()) if found.cages else 0.0,
     }
 
 

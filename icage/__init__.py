@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     from icage.errors import IcageError, InputError
     from icage.formats.cage_json import read_cage
     from icage.formats.load import load
-    from icage.friction.levels import FrictionLevel, Jam, JamTolerance, friction_levels
+    from icage.friction.curve import FrictionCurve, friction_curve
+    from icage.friction.ends import JamEnds
+    from icage.friction.jam import Jam, JamTolerance
+    from icage.friction.levels import FrictionLevel, friction_levels
+    from icage.friction.nearest import nearest_jam
     from icage.grasp import Grasp
     from icage.grasps.regrasp import regrasp
     from icage.grasps.wanted import HandLimits
@@ -38,6 +42,7 @@ _WHERE = {
     "Cage": "icage.cage",
     "CageStatus": "icage.cage",
     "Case": "icage.case",
+    "FrictionCurve": "icage.friction.curve",
     "FrictionLevel": "icage.friction.levels",
     "Grasp": "icage.grasp",
     "GraspMinimum": "icage.cage",
@@ -45,15 +50,18 @@ _WHERE = {
     "HandShape": "icage.hand",
     "IcageError": "icage.errors",
     "InputError": "icage.errors",
-    "Jam": "icage.friction.levels",
-    "JamTolerance": "icage.friction.levels",
+    "Jam": "icage.friction.jam",
+    "JamEnds": "icage.friction.ends",
+    "JamTolerance": "icage.friction.jam",
     "Outline": "icage.outline",
     "Placement": "icage.hand",
     "PlacementClass": "icage.placement_class",
     "Puncture": "icage.cage",
     "Sublevels": "icage.minima",
+    "friction_curve": "icage.friction.curve",
     "friction_levels": "icage.friction.levels",
     "load": "icage.formats.load",
+    "nearest_jam": "icage.friction.nearest",
     "plan": "icage.planner",
     "read_cage": "icage.formats.cage_json",
     "regrasp": "icage.grasps.regrasp",
@@ -64,6 +72,7 @@ __all__ = [
     "Cage",
     "CageStatus",
     "Case",
+    "FrictionCurve",
     "FrictionLevel",
     "Grasp",
     "GraspMinimum",
@@ -72,14 +81,17 @@ __all__ = [
     "IcageError",
     "InputError",
     "Jam",
+    "JamEnds",
     "JamTolerance",
     "Outline",
     "Placement",
     "PlacementClass",
     "Puncture",
     "Sublevels",
+    "friction_curve",
     "friction_levels",
     "load",
+    "nearest_jam",
     "plan",
     "read_cage",
     "regrasp",

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only
-from icage.checks import a_count, a_number, an_instance, one_of
+from icage.checks import a_count, a_number, an_instance
 from icage.contacts import as_contacts, check_contacts, check_radius
 from icage.errors import CaseError, GraspError, InputError
 from icage.grasp import Grasp
@@ -127,7 +127,8 @@ class Case(Value):
         self,
         top: int = 10,
         *,
-        aim: Literal["first", "cage"] = "first",
+        aim: Literal["first", "cage", "friction"] = "first",
+        mu: float | None = None,
         rng: np.random.Generator | None = None,
         limits: HandLimits | None = None,
         avoid: Sequence[Sequence[float]] = (),
@@ -143,7 +144,10 @@ class Case(Value):
         top:
             How many to return; fewer if there are no more.
         aim:
-            Rank by sigma_first / sigma_0 ("first") or by sigma_max / sigma_0 ("cage").
+            Rank by sigma_first / sigma_0 ("first"), by sigma_max / sigma_0 ("cage") or, "friction",
+            by what friction leaves of the first: sigma_first(mu) / sigma_0.
+        mu:
+            [1] Coefficient of friction at the fingers, with aim "friction" only.
         rng:
             Where the random moves come from; ``numpy.random.default_rng(0)`` if None.
         limits:
@@ -166,7 +170,7 @@ class Case(Value):
         GraspError:
             No immobilizing three-finger grasp was found.
         InputError:
-            ``top`` below 1, or a limit that no hand can meet.
+            ``top`` below 1, a limit that no hand can meet, or an aim and a mu that do not fit.
 
         Examples
         --------
@@ -178,16 +182,15 @@ class Case(Value):
         from icage.grasps.of_case import best_of_case, grasps_in
         from icage.grasps.wanted import HandLimits, Wanted, as_stretches
 
-        one_of(aim, ("first", "cage"), "aim")
         a_count(top, "top")
         a_count(workers, "workers")
         draws = np.random.default_rng(0) if rng is None else rng
         an_instance(draws, np.random.Generator, "rng")
         hand = HandLimits() if limits is None else an_instance(limits, HandLimits, "limits")
-        wanted = Wanted(aim, limits=hand, avoid=as_stretches(avoid), tolerance=tolerance)
+        wanted = Wanted(aim, limits=hand, avoid=as_stretches(avoid), tolerance=tolerance, mu=mu)
         if seconds is not None and a_number(seconds, "seconds") <= 0.0:
             raise InputError(f"seconds is {seconds:g}; more than 0 is needed")
-        return grasps_in(best_of_case(self, top, wanted, draws, workers, progress, seconds), aim)
+        return grasps_in(best_of_case(self, top, wanted, draws, workers, progress, seconds))
 
     def _repr_svg_(self) -> str:
         from icage.formats.picture import case_picture

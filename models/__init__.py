@@ -9,6 +9,8 @@ CASES = Path(__file__).resolve().parent / "cases"
 """Solved problems: what the planner is checked against."""
 HARD = Path(__file__).resolve().parent / "hard"
 """Cages with disc fingers that are hard on planner or physics."""
+FRICTION = Path(__file__).resolve().parent / "friction"
+"""Grasps of the shipped objects that keep most of their guarantee with friction."""
 HAND = Path(__file__).resolve().parent / "hand"
 
 

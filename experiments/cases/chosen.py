@@ -138,12 +138,13 @@ def say_how_to_keep(found: Chosen) -> None:
 
 
 def _levels(cage: Cage, unit: str) -> str:
-    from icage.grasps.planned import score
+    from icage.grasps.scores import score
+    from icage.grasps.wanted import Wanted
 
     first, top = (
         "never" if level is None else f"{level:.6g}" for level in (cage.sigma_first, cage.sigma_max)
     )
     return (
-        f"score {score(cage, 'first'):.4f}, sigma_0 {cage.sigma_0:.6g}, sigma_first {first}, "
+        f"score {score(cage, Wanted()):.4f}, sigma_0 {cage.sigma_0:.6g}, sigma_first {first}, "
         f"sigma_max {top} {unit}"
     )

@@ -80,7 +80,7 @@ def options_of(document: Mapping[str, Any]) -> SearchOptions:
     wanted = Wanted(
         plain.pop("aim"), plain.pop("corners"), None if near is None else tuple(near),
         HandLimits(**limits), tuple(tuple(one) for one in plain.pop("avoid")),
-        plain.pop("tolerance"),
+        plain.pop("tolerance"), plain.pop("mu"),
     )  # fmt: skip
     reading = dict(plain.pop("reading"))
     if "layers" in reading:

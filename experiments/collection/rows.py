@@ -16,7 +16,7 @@ from experiments.io.arrow_table import Table
 from icage.cage import Cage
 from icage.grasps.crew import Progress
 from icage.grasps.of_case import best_of_case
-from icage.grasps.planned import PlannedGrasps, score
+from icage.grasps.planned import PlannedGrasps
 
 Row: TypeAlias = dict[str, Any]
 
@@ -95,10 +95,10 @@ def searched_rows(
     }  # fmt: skip
     if not planned.cages:
         return [{**known, "why": _no_cage(planned)}]
-    best = zip(planned.cages[: options.top], planned.alike, strict=False)
+    best = zip(planned.cages[: options.top], planned.scores, planned.alike, strict=False)
     return [
-        {**known, "rank": rank, "alike": alike, **_grasp(cage, options)}
-        for rank, (cage, alike) in enumerate(best, 1)
+        {**known, "rank": rank, "alike": alike, "score": score, **_grasp(cage)}
+        for rank, (cage, score, alike) in enumerate(best, 1)
     ]
 
 
@@ -106,10 +106,9 @@ def _no_cage(planned: PlannedGrasps) -> str:
     return f"none of {planned.compared} grasps compared is a cage ({planned.reason_words()})"
 
 
-def _grasp(cage: Cage, options: SearchOptions) -> Row:
+def _grasp(cage: Cage) -> Row:
     places = zip(_CONTACTS, cage.contacts.tolist(), strict=True)
     return {
-        "score": score(cage, options.wanted.aim),
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,

@@ -76,9 +76,16 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument(
         "--aim",
-        choices=("first", "cage"),
+        choices=("first", "cage", "friction"),
         default="first",
-        help="rank by sigma_first / sigma_0 (first) or by sigma_max / sigma_0 (cage)",
+        help="rank by sigma_first / sigma_0 (first), by sigma_max / sigma_0 (cage), or by what "
+        "friction at the fingers leaves of the first (friction, with --mu)",
+    )
+    parser.add_argument(
+        "--mu",
+        type=positive,
+        metavar="M",
+        help="with --aim friction: coefficient of friction at the fingers",
     )
     parser.add_argument(
         "--within",
@@ -188,6 +195,12 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """The best grasps of many objects, or the list of one object."""
+    from icage.errors import InputError
+
+    if args.aim == "friction" and args.mu is None:
+        raise InputError("--aim friction needs --mu M, the coefficient of friction at the fingers")
+    if args.mu is not None and args.aim != "friction":
+        raise InputError("--mu goes with --aim friction only")
     if _are_many(args):
         _of_many(args)
     else:

@@ -14,12 +14,11 @@ from icage.cage import Cage
 from icage.case import Case
 from icage.formats.contact_sheet import contact_sheet
 from icage.formats.whole_files import whole_file
-from icage.grasps.planned import score
 
 _WRITTEN = (
-    ("within", None), ("aim", "first"), ("corners", 0), ("seed", 0), ("least-angle", None),
-    ("least-gap", None), ("sigma-min-of-hand", None), ("sigma-max-of-hand", None),
-    ("tolerance", None),
+    ("within", None), ("aim", "first"), ("mu", None), ("corners", 0), ("seed", 0),
+    ("least-angle", None), ("least-gap", None), ("sigma-min-of-hand", None),
+    ("sigma-max-of-hand", None), ("tolerance", None),
 )  # fmt: skip
 """Options and their defaults that say again which grasps were found."""
 
@@ -42,12 +41,11 @@ def write_cases(case: Case, cages: tuple[Cage, ...], args: Namespace) -> None:
         write_case_files(found, staging, LISTED)
 
 
-def draw(cages: Sequence[Cage], args: Namespace) -> None:
+def draw(cages: Sequence[Cage], scores: Sequence[float], args: Namespace) -> None:
     """All of them on one sheet, ``--figure``."""
     captions = [
-        f"{k}: score {score(cage, args.aim):.4f}, phi {cage.hand.phi_deg[0]:.1f}, "
-        f"{cage.hand.phi_deg[1]:.1f}"
-        for k, cage in enumerate(cages, 1)
+        f"{k}: score {score:.4f}, phi {cage.hand.phi_deg[0]:.1f}, {cage.hand.phi_deg[1]:.1f}"
+        for k, (cage, score) in enumerate(zip(cages, scores, strict=False), 1)
     ]
     with whole_file(Path(args.figure)) as part:
         part.write_text(contact_sheet(cages, captions), encoding="utf-8")

@@ -9,7 +9,7 @@ from experiments.cases.asked import size_words
 from experiments.cases.free_gap import free_gap
 from experiments.grasps.wanted_by_options import limit_words
 from icage.case import Case
-from icage.grasps.planned import PlannedGrasps, score
+from icage.grasps.planned import PlannedGrasps
 
 
 def tell(planned: PlannedGrasps, args: Namespace) -> None:
@@ -22,6 +22,11 @@ def tell(planned: PlannedGrasps, args: Namespace) -> None:
         lines.append(f"{planned.triples_left_out} triples of contacts were not drawn, at random")
     if planned.searches_broken_off:
         lines.append(f"{planned.searches_broken_off} searches were too large and broken off")
+    if planned.unplanned:
+        lines.append(
+            f"{planned.unplanned} candidates that might be among the best were not planned with "
+            "friction: there were too many"
+        )
     if planned.failures:
         lines.append(
             f"candidates that are no grasps of these fingers: {len(planned.failures)} "
@@ -33,11 +38,10 @@ def tell(planned: PlannedGrasps, args: Namespace) -> None:
 
 def print_list(case: Case, planned: PlannedGrasps, args: Namespace) -> None:
     """The object, the hands that were looked at, and a line a grasp, on standard output."""
-    aim, radius = args.aim, case.finger_radius
     cages = planned.cages[: args.top]
     print(
-        f"{case.name}: {len(case.outline)} vertices, {_fingers(radius, case.unit)}, "
-        f"{len(cages)} grasps, ranked by sigma_{'max' if aim == 'cage' else 'first'} / sigma_0"
+        f"{case.name}: {len(case.outline)} vertices, {_fingers(case.finger_radius, case.unit)}, "
+        f"{len(cages)} grasps, ranked by {_ranked(args)} / sigma_0"
     )
     print(f"size {size_words(case)}")
     if args.phi is None or args.within is not None:
@@ -46,15 +50,21 @@ def print_list(case: Case, planned: PlannedGrasps, args: Namespace) -> None:
         f"{'score':>8} {'first/0':>8} {'max/0':>8} {'sigma_0':>10} {'free gap':>9} {'alike':>5}  "
         f"{'phi [deg]':<17} contacts"
     )
-    for cage, alike in zip(cages, planned.alike, strict=False):
+    for cage, score, alike in zip(cages, planned.scores, planned.alike, strict=False):
         first = _ratio(cage.sigma_first, cage.sigma_0)
         top = _ratio(cage.sigma_max, cage.sigma_0)
         phi = "({:.2f}, {:.2f})".format(*cage.hand.phi_deg)
         points = "  ".join(f"({x:.6g}, {y:.6g})" for x, y in cage.contacts)
         print(
-            f"{score(cage, aim):8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g} "
+            f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g} "
             f"{free_gap(cage):9.4g} {alike:5d}  {phi:<17} {points}"
         )
+
+
+def _ranked(args: Namespace) -> str:
+    if args.aim == "friction":
+        return f"sigma_first at friction {args.mu:g}"
+    return "sigma_max" if args.aim == "cage" else "sigma_first"
 
 
 def _fingers(radius: float, unit: str) -> str:

@@ -37,7 +37,7 @@ def list_grasps(args: Namespace) -> None:
     tell(planned, args)
     document = grasps_document(case, planned, args)
     if args.figure is not None:
-        draw(cages, args)
+        draw(cages, planned.scores, args)
     if args.cases is not None:
         write_cases(case, cages, args)
     if args.json is not None:

@@ -10,7 +10,7 @@ from icage.case import Case
 from icage.discs.offsets import offsets
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.planned import PlannedGrasps, planned_grasps_of_hand
-from icage.grasps.wanted import Aim
+from icage.grasps.wanted import Wanted
 from icage.hand import HandShape
 from icage.kernels.compiled import long_job
 
@@ -26,12 +26,13 @@ def planned_grasps(case: Case, args: Namespace) -> PlannedGrasps:
     if args.phi is not None and args.within is None:
         refuse_limits(args)
         long_job()
-        return _of_one_hand(case, case.finger_radius, args.phi, args.aim)
+        return _of_one_hand(case, args.phi, Wanted(args.aim, mu=args.mu))
     return best_grasps_of(case, args.top, wanted_of(args), args.seed, args.workers, args.seconds)
 
 
-def _of_one_hand(case: Case, radius: float, phi: list[float], aim: Aim) -> PlannedGrasps:
+def _of_one_hand(case: Case, phi: list[float], wanted: Wanted) -> PlannedGrasps:
+    radius = case.finger_radius
     hand = HandShape.from_angles_deg(phi[0], phi[1])
     grown = offsets(case.outline, radius, 8).inner if radius > 0.0 else case.outline
     found = grasps_of_hand(grown, hand)
-    return planned_grasps_of_hand(case.outline, radius, hand, found, aim)
+    return planned_grasps_of_hand(case.outline, radius, hand, found, wanted)

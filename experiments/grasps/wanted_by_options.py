@@ -28,7 +28,13 @@ def wanted_of(args: Namespace) -> Wanted:
         sigma_most=inf if args.sigma_max_of_hand is None else args.sigma_max_of_hand,
     )
     return Wanted(
-        args.aim, args.corners, near, limits, as_stretches(args.avoid), args.tolerance or 0.0
+        args.aim,
+        args.corners,
+        near,
+        limits,
+        as_stretches(args.avoid),
+        args.tolerance or 0.0,
+        args.mu,
     )
 
 

@@ -7,7 +7,9 @@ from math import degrees
 from typing import Any
 
 from icage.cage import Cage
-from icage.friction.levels import FrictionLevel, Jam, JamTolerance
+from icage.friction.ends import JamEnds
+from icage.friction.jam import Jam, JamTolerance
+from icage.friction.levels import FrictionLevel
 
 
 def friction_document(found: Sequence[FrictionLevel], tolerance: JamTolerance) -> dict[str, Any]:
@@ -18,11 +20,17 @@ def friction_document(found: Sequence[FrictionLevel], tolerance: JamTolerance) -
                 "mu": level.mu,
                 "sigma_first": level.sigma_first,
                 "jam": None if level.jam is None else _jam(level.jam),
+                "ends": _ends(level.ends),
             }
             for level in found
         ],
         "tolerance": {"position": tolerance.position, "angle_deg": degrees(tolerance.angle)},
     }
+
+
+def _ends(ends: JamEnds) -> dict[str, float]:
+    """In the units of ``tolerance``: diameters and degrees."""
+    return {"position_max": ends.position_max, "angle_max_deg": degrees(ends.angle_max)}
 
 
 def _jam(jam: Jam) -> dict[str, Any]:
@@ -53,7 +61,12 @@ def friction_summary(
                 f"below {level.sigma_first:.9g} ({level.sigma_first / cage.sigma_0:.6g} sigma_0)"
             )
         limit = "" if level.jam is None else f": fingers {_list(level.jam.fingers)} jam there"
-        yield f"  mu {level.mu:<9g} {until}{limit}"
+        ends = level.ends
+        stops = (
+            f"; stops at most {ends.position_max:.3g} diameters, "
+            f"{degrees(ends.angle_max):.3g} deg off"
+        )
+        yield f"  mu {level.mu:<9g} {until}{limit}{stops if level.mu else ''}"
 
 
 def _list(fingers: tuple[int, ...]) -> str:

@@ -25,6 +25,7 @@ from icage.friction.kernels.disc_jams import (
     possible_choices,
 )
 from icage.friction.kernels.far import Near
+from icage.friction.kernels.goal import Goal
 from icage.friction.kernels.jams import LeastJam
 from icage.geometry.exterior import Pieces
 from icage.geometry.near_frame import NearFrame
@@ -38,40 +39,70 @@ _THICK = 0.5 * COLLISION
 above what the polygon's dropped vertices leave, below what a query calls a collision."""
 
 
+NO_GOAL = Goal(np.zeros((0, 2)), np.inf, False)
+"""For the least sigma."""
+
+_EVERY_HAND = 0.0
+"""Reach and turn of a tolerance that nothing is within."""
+
+
 @dataclass(frozen=True, slots=True)
 class DiscJams:
-    """All ways in which fingers may stand in the target's component, outside a tolerance."""
+    """All ways in which fingers may stand in the target's component."""
 
     pieces: Pieces
     z: FloatArray
     cells: IntArray
     contacts: DiscContacts
     subsets: BoolArray
-    near: Near
     known: float
     """[unit] Below it the component lies in the cells; inf if however far the hand opens."""
     choices: Choices
-    bounds: dict[float, FloatArray] = field(default_factory=dict[float, FloatArray])
-    """[rad] -> (k,) bounds of the choices for that angle of friction; they never rise with it."""
+    bounds: dict[tuple[Near, float], FloatArray] = field(
+        default_factory=dict[tuple[Near, float], FloatArray]
+    )
+    """(tolerance, [rad]) -> (k,) bounds of the choices for that angle of friction. They never rise
+    with the angle."""
 
-    def least(self, mu: float, below: float) -> LeastJam:
-        """The least far jam for a coefficient of friction, if it is under ``below`` [unit]."""
+    def least(self, mu: float, near: Near, below: float) -> LeastJam:
+        """The least jam outside a tolerance, if it is under ``below`` [unit]."""
         phi = math.atan(mu)
-        larger = [angle for angle in self.bounds if angle >= phi]
+        return self._least(phi, near, NO_GOAL, below, self._bounds(phi, near, below))
+
+    def nearest(self, mu: float, near: Near, goal: Goal) -> LeastJam:
+        """The jam nearest to a goal; its distance in the place of sigma."""
+        phi = math.atan(mu)
+        bound = bounds_of(
+            self.pieces, self.z, self.cells, self.contacts, self.subsets, self.choices, near, goal,
+            phi, np.inf, self._thick,
+        )  # fmt: skip
+        return self._least(phi, near, goal, np.inf, bound)
+
+    def _least(
+        self, phi: float, near: Near, goal: Goal, below: float, bound: FloatArray
+    ) -> LeastJam:
+        return least_disc_jam(
+            self.pieces, self.z, self.cells, self.contacts, self.subsets, self.choices, bound,
+            np.argsort(bound, kind="stable"), near, goal, phi, below, self._thick,
+        )  # fmt: skip
+
+    def _bounds(self, phi: float, near: Near, below: float) -> FloatArray:
+        """Bounds of the choices, from those for more friction; right where under ``below``."""
+        larger = [angle for other, angle in self.bounds if other == near and angle >= phi]
         choices = self.choices
         if larger:
-            choices = choices._replace(bound=self.bounds[min(larger)])
-        # all that may be asked for: bounds are kept for smaller coefficients
+            choices = choices._replace(bound=self.bounds[near, min(larger)])
+            if min(larger) == phi:
+                return choices.bound
         bound = bounds_of(
-            self.pieces, self.z, self.cells, self.contacts, self.subsets, choices, self.near, phi,
-            self.known, self._thick,
+            self.pieces, self.z, self.cells, self.contacts, self.subsets, choices, near,
+            NO_GOAL, phi, below, self._thick,
         )  # fmt: skip
-        self.bounds[phi] = bound
-        order = np.argsort(bound, kind="stable")
-        return least_disc_jam(
-            self.pieces, self.z, self.cells, self.contacts, self.subsets, choices, bound, order,
-            self.near, phi, below, self._thick,
-        )  # fmt: skip
+        # what is not under ``below`` may be for another question
+        beyond = ~np.isfinite(bound)
+        bound[beyond] = np.maximum(choices.bound[beyond], below)
+        self.bounds[near, phi] = bound
+        return bound
 
     @property
     def _thick(self) -> float:
@@ -79,31 +110,32 @@ class DiscJams:
 
 
 def disc_jams(cage: Cage, work: CageWork, near: Near, subsets: BoolArray) -> DiscJams:
-    """The same for one tolerance; remembered.
+    """What all questions about one cage share; remembered.
 
     Raises
     ------
     GeometryError:
         The object has no true curve for this radius.
     """
-    key = f"disc jams {near}"
-    found = work.remembered.get(key)
+    found = work.remembered.get("disc jams")
     if isinstance(found, DiscJams):
         return found
     search = work.search
     free_space = search.free_space
     first = np.inf if cage.sigma_first is None else cage.sigma_first * (1.0 - 2.0 * LEVEL)
-    known = min(first, search.level)
+    # beyond its own first level the polygon's search goes on into other basins
+    own = np.inf if work.polygon_first is None else work.polygon_first * (1.0 - 2.0 * LEVEL)
+    known = min(first, own, search.level)
     inside = int(np.searchsorted(search.node_level, known))
     outline = NearFrame.of(cage.outline).outline_into(cage.outline)
     curve = TrueCurve.of(outline, cage.finger_radius)
     contacts = disc_contacts(curve, free_space.pieces, free_space.origin)
     cells = np.ascontiguousarray(search.cells[:inside])
-    thick = _THICK * free_space.pieces.diameter
     choices = possible_choices(
         free_space.pieces, free_space.z, cells, np.ascontiguousarray(search.node_level[:inside]),
-        contacts, subsets, near, known, thick,
+        contacts, subsets, near._replace(reach=_EVERY_HAND, turn=_EVERY_HAND), NO_GOAL, known,
+        _THICK * free_space.pieces.diameter,
     )  # fmt: skip
-    jams = DiscJams(free_space.pieces, free_space.z, cells, contacts, subsets, near, known, choices)
-    work.remembered[key] = jams
+    jams = DiscJams(free_space.pieces, free_space.z, cells, contacts, subsets, known, choices)
+    work.remembered["disc jams"] = jams
     return jams

@@ -9,7 +9,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeAlias, TypeVar
+from typing import Literal, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,8 @@ _CHUNK = 48
 
 Progress: TypeAlias = Callable[[str, int, int, float | None], None]
 """Called with the stage, what is done of it and all of it, and the best score so far."""
+
+Ended: TypeAlias = Literal["out of time", "interrupted"]
 
 Given = TypeVar("Given")
 Done = TypeVar("Done")
@@ -57,11 +59,15 @@ class Crew:
     def __exit__(self, *_: object) -> None:
         self._threads.shutdown(cancel_futures=True)
 
-    def map(self, work: Callable[[Given], Done], given: list[Given], stage: str) -> Iterator[Done]:
-        """What came of each, in order."""
-        for done, answer in enumerate(self._threads.map(work, given), 1):
+    def map(
+        self, work: Callable[[Given], Done], given: list[Given], stage: str, before: int = 0,
+        total: int | None = None,
+    ) -> Iterator[Done]:  # fmt: skip
+        """What came of each, in order; of a stage of ``total``, ``before`` of which are done."""
+        total = len(given) if total is None else total
+        for done, answer in enumerate(self._threads.map(work, given), before + 1):
             yield answer
-            self._progress(stage, done, len(given), self.best)
+            self._progress(stage, done, total, self.best)
             self._look_at_the_clock()
 
     def grasps(
@@ -106,6 +112,15 @@ class Crew:
             self._note(found)
             keep.append(found)
             yield found
+
+    def start_again(self) -> None:
+        """From here on scores mean something else."""
+        self.best = None
+
+    def note(self, some: list[Findings]) -> None:
+        """Grasps that came by ``map``."""
+        for found in some:
+            self._note(found)
 
     def _note(self, found: Findings) -> None:
         if len(found):

@@ -87,7 +87,7 @@ class GraspEvaluator:
             [np.empty((0, 4)), *(stretch(outline, *ends) for ends in wanted.avoid)]
         )
         reach = radius + _TOUCHING * outline.diameter
-        self._sought = Sought(wanted.aim == "first", avoided, reach, _SEARCH_LIMIT)
+        self._sought = Sought(wanted.aim != "cage", avoided, reach, _SEARCH_LIMIT)
 
     def evaluate(
         self, contacts: FloatArray, triple: Iterable[int] = (-1, -1, -1)

@@ -10,9 +10,9 @@ from icage.case import Case
 from icage.errors import InputError
 from icage.grasp import Grasp
 from icage.grasps.crew import Progress
-from icage.grasps.planned import PlannedGrasps, planned_grasps, score
+from icage.grasps.planned import PlannedGrasps, planned_grasps
 from icage.grasps.search import ranked_grasps
-from icage.grasps.wanted import Aim, Wanted
+from icage.grasps.wanted import Wanted
 
 
 def best_of_case(
@@ -44,19 +44,20 @@ def best_of_case(
         seconds=seconds, **reporting,
     )  # fmt: skip
     contacts = (candidate.contacts for candidate in found.candidates)
-    planned = planned_grasps(case.outline, radius, contacts, wanted.aim, top)
+    planned = planned_grasps(case.outline, radius, contacts, wanted, top)
     return replace(
         planned,
         triples_left_out=found.triples_left_out,
         searches_broken_off=found.broken_off,
         compared=found.compared,
         ended=found.ended,
+        unplanned=found.unplanned,
     )
 
 
-def grasps_in(planned: PlannedGrasps, aim: Aim) -> tuple[Grasp, ...]:
+def grasps_in(planned: PlannedGrasps) -> tuple[Grasp, ...]:
     """The cages as grasps with their levels and scores."""
     return tuple(
-        Grasp(cage.contacts, cage.sigma_0, cage.sigma_first, cage.sigma_max, score(cage, aim))
-        for cage in planned.cages
+        Grasp(cage.contacts, cage.sigma_0, cage.sigma_first, cage.sigma_max, score)
+        for cage, score in zip(planned.cages, planned.scores, strict=True)
     )

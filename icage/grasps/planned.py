@@ -16,9 +16,10 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.discs.true_curve import grasp_on_curve
 from icage.errors import GeometryError, GraspError, HandError
+from icage.grasps.crew import Ended
 from icage.grasps.findings import distinct, ideas, same_idea
-from icage.grasps.search import Ended
-from icage.grasps.wanted import Aim
+from icage.grasps.scores import score
+from icage.grasps.wanted import Wanted
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
@@ -47,6 +48,8 @@ class PlannedGrasps:
 
     cages: tuple[Cage, ...]
     failures: tuple[Failure, ...]
+    scores: tuple[float, ...] = ()
+    """Of the cages: the ratio that is ranked, as it was planned."""
     alike: tuple[int, ...] = ()
     """How many more candidates are the same idea as each cage."""
     ended: Ended | None = None
@@ -57,6 +60,8 @@ class PlannedGrasps:
     """Candidates whose search of the free space was too large."""
     compared: int = 0
     """Candidates that the search has ranked."""
+    unplanned: int = 0
+    """Where plans are ranked: candidates that might be among the best and were not planned."""
 
     def reasons(self) -> list[tuple[str, int]]:
         """Reasons of the failures with their numbers, the commonest first."""
@@ -67,58 +72,51 @@ class PlannedGrasps:
         return "; ".join(f"{count} {why}" for why, count in self.reasons())
 
 
-def score(cage: Cage, aim: Aim) -> float:
-    """Ratio that ranks; levels that do not exist count as the largest sigma of the component."""
-    top = cage.sigma_max if cage.sigma_max is not None else cage.sigma_largest
-    if top is None:
-        raise GeometryError("a cage without sigma_max and without a largest sigma")
-    level = top if aim == "cage" or cage.sigma_first is None else cage.sigma_first
-    return level / cage.sigma_0
-
-
 def planned_grasps(
-    outline: Outline, radius: float, candidates: Iterable[FloatArray], aim: Aim, top: int
+    outline: Outline, radius: float, candidates: Iterable[FloatArray], wanted: Wanted, top: int
 ) -> PlannedGrasps:
     """The first ``top`` candidates, (3, 2) contacts best first, that are cages of different ideas.
 
     A candidate that fails gives its place to others like it, ``_TRIES_AT_A_PLACE`` at most.
     """
     contacts = np.array(list(candidates), dtype=np.float64).reshape(-1, 3, 2)
-    cages: list[Cage] = []
+    cages: list[tuple[float, Cage]] = []
     alike: list[int] = []
     failures: list[Failure] = []
     for group in ideas(contacts, outline.diameter):
         if len(cages) == top:
             break
-        best, why = _best_planned(outline, radius, contacts[group], aim)
+        best, why = _best_planned(outline, radius, contacts[group], wanted)
         if best is None:
             failures.append(Failure(contacts[group[0]], why))
         # a grasp of discs moves a little when it is solved on the true curve
-        elif not any(same_idea(outline, best.contacts, other.contacts) for other in cages):
+        elif not any(same_idea(outline, best[1].contacts, other.contacts) for _, other in cages):
             cages.append(best)
             alike.append(len(group) - 1)
-    return _ordered(cages, alike, failures, aim)
+    return _ordered(cages, alike, failures)
 
 
 def _best_planned(
-    outline: Outline, radius: float, alike: FloatArray, aim: Aim
-) -> tuple[Cage | None, str]:
-    """The best cage of grasps (n, 3, 2) of one idea, best first; or why the first is none.
+    outline: Outline, radius: float, alike: FloatArray, wanted: Wanted
+) -> tuple[tuple[float, Cage] | None, str]:
+    """The best cage of grasps (n, 3, 2) of one idea, best first, and its score; or why the first
+    is none.
 
     Scores of discs are those of polygons, and the best are often those that are wrong: where a
     finger is just about to be free, the true curve asks for another hand. So more than one of an
     idea is planned.
     """
     rows = distinct(alike, _APART * outline.diameter) if radius > 0.0 else np.arange(len(alike))
-    best: Cage | None = None
+    best: tuple[float, Cage] | None = None
     planned, why = 0, ""
     for row in rows[:_TRIES_AT_A_PLACE]:
-        cage = _planned(outline, radius, alike[row])
+        cage = planned_or_why(outline, radius, alike[row])
         if isinstance(cage, str):
             why = why or cage
             continue
-        if best is None or score(cage, aim) > score(best, aim):
-            best = cage
+        worth = score(cage, wanted)
+        if best is None or worth > best[0]:
+            best = worth, cage
         planned += 1
         if planned == (_OF_AN_IDEA if radius > 0.0 else 1):
             break
@@ -126,25 +124,34 @@ def _best_planned(
 
 
 def planned_grasps_of_hand(
-    outline: Outline, radius: float, hand: HandShape, candidates: Iterable[FloatArray], aim: Aim
+    outline: Outline,
+    radius: float,
+    hand: HandShape,
+    candidates: Iterable[FloatArray],
+    wanted: Wanted,
 ) -> PlannedGrasps:
     """All candidates, (3, 2) contacts, that are cages of this very hand."""
-    answers = [(contacts, _planned(outline, radius, contacts, hand)) for contacts in candidates]
-    cages = [cage for _, cage in answers if isinstance(cage, Cage)]
+    answers = [
+        (contacts, planned_or_why(outline, radius, contacts, hand)) for contacts in candidates
+    ]
+    cages = [(score(cage, wanted), cage) for _, cage in answers if isinstance(cage, Cage)]
     failures = [Failure(contacts, why) for contacts, why in answers if isinstance(why, str)]
-    return _ordered(cages, [0] * len(cages), failures, aim)
+    return _ordered(cages, [0] * len(cages), failures)
 
 
 def _ordered(
-    cages: list[Cage], alike: list[int], failures: list[Failure], aim: Aim
+    cages: list[tuple[float, Cage]], alike: list[int], failures: list[Failure]
 ) -> PlannedGrasps:
-    order = sorted(range(len(cages)), key=lambda k: -score(cages[k], aim))
+    order = sorted(range(len(cages)), key=lambda k: -cages[k][0])
     return PlannedGrasps(
-        tuple(cages[k] for k in order), tuple(failures), tuple(alike[k] for k in order)
+        tuple(cages[k][1] for k in order),
+        tuple(failures),
+        tuple(cages[k][0] for k in order),
+        tuple(alike[k] for k in order),
     )
 
 
-def _planned(
+def planned_or_why(
     outline: Outline, radius: float, contacts: FloatArray, hand: HandShape | None = None
 ) -> Cage | str:
     """The cage of a candidate, or why there is none: one that fails is no reason to stop."""

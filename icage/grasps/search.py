@@ -7,23 +7,26 @@ own; the sets are those of [Bunis2018, Sec. VII-A] with the squeezing test.
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
 
 import numpy as np
 
 from icage.errors import GraspError, InputError
 from icage.geometry.near_frame import NearFrame
-from icage.grasps.crew import Crew, OutOfTimeError, Progress
+from icage.grasps.crew import Crew, Ended, OutOfTimeError, Progress
 from icage.grasps.findings import groups
+from icage.grasps.second_look import SecondLook
 from icage.grasps.stages import Stages
 from icage.grasps.wanted import Candidate, Wanted
 from icage.outline import Outline
 
+_AFTER_CTRL_C = 1.0
+"""[s] For the plans without which nothing can be ranked, where a search is interrupted."""
+
 _ANY = Wanted()
 """Any grasp, by sigma_first / sigma_0."""
-
-Ended: TypeAlias = Literal["out of time", "interrupted"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +45,9 @@ class Ranking:
         Candidates that were looked at.
     ended:
         What ended the search before its own end, or None.
+    unplanned:
+        Candidates that might be among the best by a plan, where plans are ranked, and were not
+        planned.
     """
 
     candidates: tuple[Candidate, ...]
@@ -50,6 +56,7 @@ class Ranking:
     broken_off: int
     compared: int = 0
     ended: Ended | None = None
+    unplanned: int = 0
 
 
 def _silent(_stage: str, _done: int, _total: int, _best: float | None) -> None:
@@ -76,7 +83,7 @@ def ranked_grasps(
     wanted:
         What is ranked and which grasps are looked at. aim "first" ranks by sigma_first / sigma_0,
         "cage" by sigma_max / sigma_0 (the largest sigma of the component for a hand that never
-        escapes).
+        escapes), "friction" by sigma_first(mu) / sigma_0.
     workers:
         Threads; the result does not depend on their number.
     seconds:
@@ -90,15 +97,17 @@ def ranked_grasps(
     frame = NearFrame.of(outline)
     outline = frame.outline_into(outline)
     search = Stages(outline, finger_radius, wanted, rng)
-    ended: Ended | None = None
-    with Crew(workers, progress, seconds) as crew:
-        try:
-            search.run(crew)
-        except OutOfTimeError:
-            ended = "out of time"
-        except KeyboardInterrupt:
-            ended = "interrupted"
-    best = search.best_first()
+    plans = wanted.aim == "friction"
+    begun = time.monotonic()
+    with Crew(workers, progress, 0.5 * seconds if plans and seconds else seconds) as crew:
+        ended = _as_it_ended(lambda: search.run(crew))
+    best, unplanned = search.best_first(), 0
+    if plans and len(best):
+        look = SecondLook(search)
+        rest = None if seconds is None else begun + seconds - time.monotonic()
+        with Crew(workers, progress, _AFTER_CTRL_C if ended == "interrupted" else rest) as again:
+            ended = _as_it_ended(lambda: look.run(again)) or ended
+        best, unplanned = look.best_first(), look.left_out
     if not len(best):
         when = "" if ended is None else f" (the search was {ended})"
         raise GraspError(
@@ -107,8 +116,19 @@ def ranked_grasps(
         )
     return Ranking(
         tuple(replace(c, contacts=frame.back(c.contacts)) for c in best.candidates()),
-        search.triples, search.left_out, search.broken_off, crew.compared, ended,
+        search.triples, search.left_out, search.broken_off, crew.compared, ended, unplanned,
     )  # fmt: skip
+
+
+def _as_it_ended(work: Callable[[], None]) -> Ended | None:
+    """Work that may be ended early keeps what it has."""
+    try:
+        work()
+    except OutOfTimeError:
+        return "out of time"
+    except KeyboardInterrupt:
+        return "interrupted"
+    return None
 
 
 def best_grasps(

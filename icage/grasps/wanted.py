@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 from typing import Final, Literal, TypeAlias
 
 from icage.arrays import FloatArray
-from icage.checks import a_number
+from icage.checks import a_number, one_of
 from icage.errors import InputError
 
-Aim: TypeAlias = Literal["first", "cage"]
-"""What is ranked: sigma_first / sigma_0, or sigma_max / sigma_0."""
+Aim: TypeAlias = Literal["first", "cage", "friction"]
+"""What is ranked: sigma_first / sigma_0, sigma_max / sigma_0, or sigma_first(mu) / sigma_0."""
+
+AIMS: Final[tuple[Aim, ...]] = ("first", "cage", "friction")
 
 Stretch: TypeAlias = tuple[float, float]
 """From one arclength of the outline to another, counterclockwise from its first vertex, [unit]."""
@@ -102,6 +104,14 @@ class Wanted:
     tolerance:
         [unit] How wrong the outline may be: fingers must be ten times further apart, and the cage
         must be that deep.
+    mu:
+        [1] Coefficient of friction at the fingers, where aim is "friction"; else None.
+
+    Raises
+    ------
+    InputError:
+        There is no such aim, the tolerance is negative, or mu is given without the aim "friction",
+        missing with it, or not positive.
     """
 
     aim: Aim = "first"
@@ -110,10 +120,17 @@ class Wanted:
     limits: HandLimits = field(default_factory=HandLimits)
     avoid: tuple[Stretch, ...] = ()
     tolerance: float = 0.0
+    mu: float | None = None
 
     def __post_init__(self) -> None:
-        if self.aim not in ("first", "cage"):
-            raise InputError(f"aim = {self.aim!r}; 'first' or 'cage' is needed")
+        one_of(self.aim, AIMS, "aim")
+        if self.mu is None:
+            if self.aim == "friction":
+                raise InputError("aim 'friction' needs mu, the coefficient of friction")
+        elif self.aim != "friction":
+            raise InputError(f"mu goes with the aim 'friction' only; the aim is {self.aim!r}")
+        elif a_number(self.mu, "mu") <= 0.0:
+            raise InputError(f"mu = {self.mu:g}; more than 0 is needed")
         a_number(self.tolerance, "tolerance")
         if self.tolerance < 0.0:
             raise InputError(f"tolerance = {self.tolerance:g}; 0 or more is needed")
@@ -156,8 +173,8 @@ class Candidate:
     triple:
         Contact features (see Features), in the order of the contacts.
     sigma_0, level:
-        [unit] Of the target, and the one that is ranked: sigma_first, sigma_max, or the largest
-        sigma of a hand that never escapes; never more than the hand can open.
+        [unit] Of the target, and the one that is ranked: sigma_first, sigma_first(mu), sigma_max,
+        or the largest sigma of a hand that never escapes; never more than the hand can open.
     score:
         level / sigma_0.
     """

@@ -134,7 +134,7 @@ def two_finger_jams(
     z = _complex(hand)
     found: list[Floats] = []
     use = np.flatnonzero(every.single)
-    p, q, n = every.p[use], every.q[use, 0], every.n[use, 0]
+    q, n = every.q[use, 0], every.n[use, 0]
     gap = q[None, :] - q[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
         pushes = np.abs(np.angle(gap / n[:, None])) <= phi + SLACK
@@ -181,15 +181,14 @@ def three_finger_jams(
                     if not len(use):
                         continue
                     n = len(use)
+                    b_q, c_q = np.stack([q_b] * 2, 1), np.stack([q_c] * 2, 1)
+                    b_n = (b_q - fb[:, None]) / curve.radius
+                    c_n = (c_q - fc[:, None]) / curve.radius
                     all_three = Contacts(
                         np.concatenate([every.p[use], fb, fc]),
-                        np.concatenate([every.q[use], np.stack([q_b] * 2, 1), np.stack([q_c] * 2, 1)]),
-                        np.concatenate([
-                            every.n[use],
-                            np.stack([(q_b - fb) / curve.radius] * 2, 1),
-                            np.stack([(q_c - fc) / curve.radius] * 2, 1),
-                        ]),
-                    )  # fmt: skip
+                        np.concatenate([every.q[use], b_q, c_q]),
+                        np.concatenate([every.n[use], b_n, c_n]),
+                    )
                     rows = np.arange(n)[:, None] + n * np.arange(3)
                     jam = squeezes(all_three, rows, phi, curve.ring.diameter)
                     f = np.empty((n, 3), dtype=np.complex128)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.friction.kernels.disc_features import POWER, TORQUE
-from icage.friction.kernels.far import least_far
+from icage.friction.kernels.goal import cheapest
 from icage.friction.kernels.polygon import clip, least
 from icage.kernels.compiled import compiled
 
@@ -25,8 +25,9 @@ _FINE = 1e-12
 
 
 @compiled
-def least_balanced(n, ray, m, near, below, loose_torque, loose_power, room, point):
-    """Least sigma of the ``n`` corners of ``room.polygon``, if it is under ``below``; else inf.
+def least_balanced(n, z, ray, m, near, goal, below, loose_torque, loose_power, room, point):
+    """Least sigma, or distance from the goal, of the ``n`` corners of ``room.polygon``, if that is
+    under ``below``; else inf.
 
     ``ray`` has m rows; their torques and powers may be off by as much as is ``loose``.
     """
@@ -57,7 +58,7 @@ def least_balanced(n, ray, m, near, below, loose_torque, loose_power, room, poin
         if high[a, 0] < -loose_torque:
             continue
         one = _clipped(polygon, n, ray[a], 1.0, loose_torque, room.row, room.one)
-        if one == 0 or least(room.one, one, room.some) >= best:
+        if one == 0 or (not goal.asked and least(room.one, one, room.some) >= best):
             continue
         for b in range(m):
             if low[b, 0] > loose_torque:
@@ -73,12 +74,12 @@ def least_balanced(n, ray, m, near, below, loose_torque, loose_power, room, poin
                 room.row[3] = -ray[a, POWER + 1]
                 room.row[4] = loose_power
                 both = clip(room.halves[0], both, room.row, room.half)
-                sigma = least_far(room.half, both, near, best, room.spare, room.some)
+                sigma = cheapest(room.half, both, near, goal, z, best, room.spare, room.some)
             elif high[a, 1] < 0.0 and high[b, 1] < 0.0:
-                sigma = least_far(room.halves[0], both, near, best, room.spare, room.some)
+                sigma = cheapest(room.halves[0], both, near, goal, z, best, room.spare, room.some)
             else:
                 sigma = _least_squeezing(
-                    both, ray[a], ray[b], near, best, loose_torque, loose_power, room
+                    both, z, ray[a], ray[b], near, goal, best, loose_torque, loose_power, room
                 )
             if sigma < best:
                 best = sigma
@@ -109,8 +110,8 @@ def _clipped(corners, n, ray, sign, loose, row, kept):
 
 
 @compiled
-def _least_squeezing(n, a, b, near, below, loose_torque, loose_power, room):
-    """Least sigma on ``room.halves[0]`` where both balances together squeeze, at ``room.some``."""
+def _least_squeezing(n, z, a, b, near, goal, below, loose_torque, loose_power, room):
+    """The same on ``room.halves[0]`` where both balances together squeeze, at ``room.some``."""
     sizes, depth = room.sizes, room.depth
     row, found = room.row, room.found
     best = below
@@ -129,7 +130,7 @@ def _least_squeezing(n, a, b, near, below, loose_torque, loose_power, room):
         # T_a P_b - T_b P_a <= 0, from outside: every power at its least, every torque off
         _squeezing_row(row, a, b, least_a - loose_power, least_b - loose_power, loose_torque)
         n = clip(corners, n, row, room.half)
-        sigma = least_far(room.half, n, near, best, room.spare, found)
+        sigma = cheapest(room.half, n, near, goal, z, best, room.spare, found)
         if sigma >= best:
             continue
         power_a = _power(a, found) - loose_power

@@ -29,7 +29,8 @@ from icage.friction.kernels.disc_hands import (
     place_of,
     slack_of,
 )
-from icage.friction.kernels.far import Near, least_far
+from icage.friction.kernels.far import Near
+from icage.friction.kernels.goal import Goal, cheapest
 from icage.friction.kernels.jams import LeastJam
 from icage.friction.kernels.polygon import least
 from icage.kernels.compiled import compiled
@@ -45,6 +46,10 @@ _NARROW = 1e-5
 
 _TRIES = 4000
 """Bounds that are computed for one choice; what has not been decided then counts as a jam."""
+
+_GAP = 1e-9
+"""[1] Parts that could lower a level by less (relative) are not looked at; it is lowered by that.
+Where forces balance along the curve sigma hardly changes, and all parts there would be."""
 
 _STACK = 256
 """Parts that wait."""
@@ -97,8 +102,11 @@ def _room(fingers):
 
 
 @compiled
-def possible_choices(pieces, z, cells, levels, contacts, subsets, near, below, thick):
-    """Every choice with far hands under ``below``, whatever forces do, in no order."""
+def possible_choices(pieces, z, cells, levels, contacts, subsets, near, goal, below, thick):
+    """Every choice with far hands under ``below``, whatever forces do, in no order.
+
+    The ``goal`` asks for nothing.
+    """
     fingers = len(z)
     room = _room(fingers)
     state = np.full((fingers, COLUMNS), -1.0)
@@ -132,8 +140,8 @@ def possible_choices(pieces, z, cells, levels, contacts, subsets, near, below, t
                 ):
                     continue
                 bound = _bound(
-                    pieces, z, cells[c], finger, chosen, count, contacts, state, 0.0, near, below,
-                    thick, room, point,
+                    pieces, z, cells[c], finger, chosen, count, contacts, state, 0.0, near, goal,
+                    below, thick, room, point,
                 )  # fmt: skip
                 bound = max(bound, levels[c])
                 if bound >= below:
@@ -152,7 +160,7 @@ def possible_choices(pieces, z, cells, levels, contacts, subsets, near, below, t
 
 
 @compiled
-def bounds_of(pieces, z, cells, contacts, subsets, choices, near, phi, below, thick):
+def bounds_of(pieces, z, cells, contacts, subsets, choices, near, goal, phi, below, thick):
     """Bounds (k,) [unit] of the choices for friction of an angle; inf from ``below`` on."""
     fingers = len(z)
     room = _room(fingers)
@@ -161,23 +169,23 @@ def bounds_of(pieces, z, cells, contacts, subsets, choices, near, phi, below, th
     point = np.empty(4)
     bound = np.full(len(choices.bound), np.inf)
     for k in range(len(bound)):
-        if choices.bound[k] >= below:
+        if choices.bound[k] >= (goal.most if goal.asked else below):
             continue
         cell, chosen = cells[choices.cell[k]], choices.chosen[k]
         count = _begun(subsets[choices.subset[k]], chosen, contacts, finger, state)
         found = _bound(
-            pieces, z, cell, finger, chosen, count, contacts, state, phi, near, below, thick, room,
-            point,
+            pieces, z, cell, finger, chosen, count, contacts, state, phi, near, goal, below, thick,
+            room, point,
         )  # fmt: skip
-        bound[k] = max(found, choices.bound[k])
+        bound[k] = found if goal.asked else max(found, choices.bound[k])
     return bound
 
 
 @compiled
 def least_disc_jam(
-    pieces, z, cells, contacts, subsets, choices, bounds, order, near, phi, below, thick
+    pieces, z, cells, contacts, subsets, choices, bounds, order, near, goal, phi, below, thick
 ):
-    """The far jam of least sigma, if it is under ``below``.
+    """The far jam of least sigma, or the jam nearest to the goal, if that is under ``below``.
 
     ``bounds`` (k,) are those of the choices for this angle of friction ``phi`` [rad] or more,
     ``order`` sorts them. Lengths in the unit of the pieces; ``thick``: how far a finger may be off.
@@ -195,7 +203,7 @@ def least_disc_jam(
     best = below
     for position in range(len(order)):
         choice = order[position]
-        if bounds[choice] >= best:
+        if bounds[choice] >= best * (1.0 - _GAP):
             break
         cell, chosen = cells[choices.cell[choice]], choices.chosen[choice]
         floor = bounds[choice]
@@ -203,15 +211,15 @@ def least_disc_jam(
         states[0] = -1.0
         count = _begun(subset, chosen, contacts, finger, states[0])
         found = _bound(
-            pieces, z, cell, finger, chosen, count, contacts, states[0], phi, near, best, thick,
-            room, points[0],
+            pieces, z, cell, finger, chosen, count, contacts, states[0], phi, near, goal, best,
+            thick, room, points[0],
         )  # fmt: skip
         waiting[0] = max(found, floor)
         top = 1
         tries = 0
         while top:
             top -= 1
-            if waiting[top] >= best:
+            if waiting[top] >= best * (1.0 - _GAP):
                 continue
             state[:] = states[top]
             if (
@@ -230,8 +238,8 @@ def least_disc_jam(
             for k in range(2):
                 tries += 1
                 bound[k] = _bound(
-                    pieces, z, cell, finger, chosen, count, contacts, child[k], phi, near, best,
-                    thick, room, point[k],
+                    pieces, z, cell, finger, chosen, count, contacts, child[k], phi, near,
+                    goal, best * (1.0 - _GAP), thick, room, point[k],
                 )  # fmt: skip
                 bound[k] = max(bound[k], own)
             # the lower one is looked at first
@@ -242,7 +250,7 @@ def least_disc_jam(
                     points[top] = point[k]
                     waiting[top] = bound[k]
                     top += 1
-    return LeastJam(best if best < below else np.inf, hand, touches)
+    return LeastJam(best * (1.0 - _GAP) if best < below else np.inf, hand, touches)
 
 
 @compiled
@@ -260,8 +268,9 @@ def _begun(subset, chosen, contacts, finger, state):
 
 @compiled
 def _bound(
-    pieces, z, cell, finger, chosen, count, contacts, state, phi, near, below, thick, room, point
-):
+    pieces, z, cell, finger, chosen, count, contacts, state, phi, near, goal, below, thick, room,
+    point,
+):  # fmt: skip
     """No far jam of these features in this cell is smaller, if that is under ``below``; else inf.
 
     For ``phi`` = 0 no hand at all. ``point`` is where the bound would be reached.
@@ -270,13 +279,17 @@ def _bound(
     n = hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thick, room)
     if n == 0:
         return np.inf
-    under = below + slack.w
-    if slack.w > 0.0:
+    # what the value sought may be less on the true arcs
+    off = slack.shift if goal.asked else slack.w
+    under = below + off
+    if goal.asked:
+        goal = Goal(goal.fingers, goal.most + slack.w, True)
+    elif slack.w > 0.0:
         small = least(room.polygon, n, room.some)
         near = _smaller(near, slack, slack.w / max(small, 1e-300))
     if phi == 0.0:
-        sigma = least_far(room.polygon, n, near, under, room.spare, point)
-        return sigma - slack.w
+        value = cheapest(room.polygon, n, near, goal, z, under, room.spare, point)
+        return value - off
     g = generators(contacts, finger, chosen, count, state, phi, room.edge)
     m = rays(z, room.edge, g, room.ray)
     if m == 0:
@@ -284,11 +297,11 @@ def _bound(
     reach = 0.0
     for f in range(len(z)):
         reach = max(reach, np.hypot(z[f, 0], z[f, 1]))
-    sigma = least_balanced(
-        n, room.ray, m, near, under, 0.01 * thick + slack.shift,
+    value = least_balanced(
+        n, z, room.ray, m, near, goal, under, 0.01 * thick + slack.shift,
         slack.w * reach + 1e-15 * contacts.radius, room, point,
     )  # fmt: skip
-    return sigma - slack.w
+    return value - off
 
 
 @compiled

@@ -32,7 +32,8 @@ class Near(NamedTuple):
 
     The middle of the fingers, at ``mid`` of the unit hand, within ``reach`` of ``at``; the
     direction of w within ``turn`` [rad] of the unit vector ``ahead``. ``fine`` [unit]: how far the
-    cover of the disc's outside may cut into it.
+    cover of the disc's outside may cut into it. An infinite ``reach`` or ``turn`` asks nothing;
+    another ``turn`` is less than a quarter turn.
     """
 
     at_x: float
@@ -74,6 +75,8 @@ def least_far(corners, n, near, below, part, point):
     best = below
     row = np.zeros(5)
     for way in (-1.0, 1.0):
+        if np.isinf(near.turn):
+            break
         # w turned by more than ``turn`` that way: cross(edge of the sector, w) of that sign
         c = math.cos(near.turn)
         s = way * math.sin(near.turn)
@@ -87,6 +90,8 @@ def least_far(corners, n, near, below, part, point):
         if sigma < best:
             best = sigma
             point[:] = found
+    if np.isinf(near.reach):
+        return best if best < below else np.inf
     stack = np.empty((_SECTORS + _DEEPEST, 2))
     half = math.pi / _SECTORS
     for k in range(_SECTORS):

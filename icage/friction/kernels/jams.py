@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.friction.kernels.balance import EVERYTHING, NOTHING, balancing
-from icage.friction.kernels.far import least_far
+from icage.friction.kernels.goal import cheapest
 from icage.friction.kernels.polygon import clip, finger_row
 from icage.kernels.compiled import compiled
 
@@ -32,8 +32,8 @@ class LeastJam(NamedTuple):
 
 
 @compiled
-def least_jam(pieces, z, cells, levels, contacts, subsets, near, below, thick):
-    """The far jam of least sigma, if it is under ``below``.
+def least_jam(pieces, z, cells, levels, contacts, subsets, near, goal, below, thick):
+    """The far jam of least sigma, or the jam nearest to a goal, if that is under ``below``.
 
     Parameters
     ----------
@@ -46,8 +46,9 @@ def least_jam(pieces, z, cells, levels, contacts, subsets, near, below, thick):
         The features of the pieces with their cones.
     subsets:
         (k, f) which fingers touch, for every way in which at least two do.
-    near, below:
-        The hands that count as the target; a level [unit].
+    near, goal, below:
+        The hands that count as the target; a hand that jams may be sought near to; a level or a
+        distance [unit].
     thick:
         [unit] How far a finger may be off its feature.
     """
@@ -60,7 +61,8 @@ def least_jam(pieces, z, cells, levels, contacts, subsets, near, below, thick):
     sector = np.empty(2)
     best = below
     for c in range(len(cells)):
-        if levels[c] >= best:
+        most = goal.most if goal.asked else best
+        if levels[c] >= most:
             break
         for subset in range(len(subsets)):
             count = 0
@@ -78,7 +80,8 @@ def least_jam(pieces, z, cells, levels, contacts, subsets, near, below, thick):
                     size = contacts.ptr[piece + 1] - contacts.ptr[piece]
                     chosen[k] = contacts.ptr[piece] + left % size
                     left //= size
-                if not _sizes_fit(z, finger, chosen, count, contacts, levels[c], best, thick):
+                most = goal.most if goal.asked else best
+                if not _sizes_fit(z, finger, chosen, count, contacts, levels[c], most, thick):
                     continue
                 kind = balancing(z, finger, contacts.cone, chosen, count, sector)
                 if kind == NOTHING:
@@ -90,7 +93,7 @@ def least_jam(pieces, z, cells, levels, contacts, subsets, near, below, thick):
                     n = _within(polygon, n, sector, thick, spare)
                 if n == 0:
                     continue
-                sigma = least_far(polygon, n, near, best, spare, point)
+                sigma = cheapest(polygon, n, near, goal, z, best, spare, point)
                 if sigma < best:
                     best = sigma
                     hand[:] = point

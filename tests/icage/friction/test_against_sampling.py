@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import icage
-from icage.friction import levels
+from icage.friction import jam_search
 from icage.friction.contacts import Contacts, contacts_of
 from icage.geometry.exterior import Pieces
 from icage.outline import Outline
@@ -14,6 +14,7 @@ from icage.planner import plan
 from tests.icage.friction.beside_sampling import (
     Compared,
     compared,
+    compared_disc,
     compared_on,
     drawn,
     drawn_round,
@@ -40,6 +41,8 @@ TOOLS = {
 
 FEW = range(63)
 MANY = range(63, 700)
+FEW_DISCS = range(14, 28)
+MANY_DISCS = range(28, 240)
 
 
 def wrong(seeds: range) -> dict[int, Compared]:
@@ -49,6 +52,21 @@ def wrong(seeds: range) -> dict[int, Compared]:
 
 def test_levels_agree_with_sampling() -> None:
     assert wrong(FEW) == {}
+
+
+def wrong_discs(seeds: range) -> dict[int, Compared]:
+    results = {seed: compared_disc(seed) for seed in seeds}
+    return {seed: result for seed, result in results.items() if result and not result.agrees}
+
+
+def test_levels_of_discs_agree_with_sampling() -> None:
+    assert wrong_discs(FEW_DISCS) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(4))
+def test_levels_of_many_discs_agree_with_sampling(part: int) -> None:
+    assert wrong_discs(MANY_DISCS[part::4]) == {}
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -73,42 +91,46 @@ def test_levels_of_many_targets_agree_with_sampling() -> None:
 
 
 def test_a_cone_half_as_wide_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(levels, "contacts_of", lambda pieces, mu: contacts_of(pieces, 0.5 * mu))
+    monkeypatch.setattr(jam_search, "contacts_of", lambda pieces, mu: contacts_of(pieces, 0.5 * mu))
     assert wrong(range(14))
 
 
 def test_a_cone_twice_as_wide_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(levels, "contacts_of", lambda pieces, mu: contacts_of(pieces, 2.0 * mu))
+    monkeypatch.setattr(jam_search, "contacts_of", lambda pieces, mu: contacts_of(pieces, 2.0 * mu))
     assert wrong(range(14))
 
 
 def test_a_missing_third_finger_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    every = levels.touching_subsets
-    monkeypatch.setattr(levels, "touching_subsets", lambda n: every(n)[every(n).sum(axis=1) == 2])
+    every = jam_search.touching_subsets
+    monkeypatch.setattr(
+        jam_search, "touching_subsets", lambda n: every(n)[every(n).sum(axis=1) == 2]
+    )
     assert wrong(range(14))
 
 
 def test_missing_pairs_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    every = levels.touching_subsets
-    monkeypatch.setattr(levels, "touching_subsets", lambda n: every(n)[every(n).sum(axis=1) == 3])
+    every = jam_search.touching_subsets
+    monkeypatch.setattr(
+        jam_search, "touching_subsets", lambda n: every(n)[every(n).sum(axis=1) == 3]
+    )
     assert wrong(range(14))
 
 
 def test_missing_concave_vertices_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(levels, "contacts_of", lambda *asked: _without(False, *asked))
+    monkeypatch.setattr(jam_search, "contacts_of", lambda *asked: _without(False, *asked))
     assert wrong(range(28))
 
 
 def test_a_puncture_is_a_jam_just_above_the_first_level(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is an equilibrium, though no stable one, and below it a far jam may come before."""
-    monkeypatch.setattr(levels, "LEVEL", -levels.LEVEL)
+    monkeypatch.setattr(jam_search, "LEVEL", -jam_search.LEVEL)
     assert _without_a_jam(range(42)) == []
 
 
 def test_missing_convex_vertices_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Below the first level such jams are rare: there only a puncture balances on a vertex."""
-    monkeypatch.setattr(levels, "LEVEL", -levels.LEVEL)
-    monkeypatch.setattr(levels, "contacts_of", lambda *asked: _without(True, *asked))
+    monkeypatch.setattr(jam_search, "LEVEL", -jam_search.LEVEL)
+    monkeypatch.setattr(jam_search, "contacts_of", lambda *asked: _without(True, *asked))
     assert _without_a_jam(range(42))
 
 

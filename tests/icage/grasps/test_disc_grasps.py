@@ -14,8 +14,10 @@ from icage.discs.true_curve import grasp_on_curve, onto_curve, refine
 from icage.errors import GeometryError, GraspError, OutlineError
 from icage.formats.case_json import read_case, read_object
 from icage.grasps.of_one_hand import grasps_of_hand
-from icage.grasps.planned import planned_grasps, planned_grasps_of_hand, score
+from icage.grasps.planned import planned_grasps, planned_grasps_of_hand
+from icage.grasps.scores import score
 from icage.grasps.search import ranked_grasps
+from icage.grasps.wanted import Wanted
 from icage.hand import HandShape
 from icage.outline import MAX_VERTICES, Outline
 from icage.planner import plan
@@ -37,13 +39,13 @@ def test_the_best_grasp_of_the_slot_is_there_at_every_top(
 ) -> None:
     case = read_case(INPUTS / "slot_disc_plan.json")
     known = plan(case.outline, case.contacts, case.finger_radius)
-    cages = planned_grasps(slot[0], 2.0, slot[1], "first", top).cages
+    cages = planned_grasps(slot[0], 2.0, slot[1], Wanted(), top).cages
     assert 1 <= len(cages) <= top
     # many grasps of the slot open equally far: which of them is told first is no matter
-    assert score(cages[0], "first") >= score(known, "first") - 1e-9
-    assert score(cages[0], "first") == pytest.approx(1.02032, abs=1e-5)
-    assert [score(c, "first") for c in cages] == sorted(
-        (score(c, "first") for c in cages), reverse=True
+    assert score(cages[0], Wanted()) >= score(known, Wanted()) - 1e-9
+    assert score(cages[0], Wanted()) == pytest.approx(1.02032, abs=1e-5)
+    assert [score(c, Wanted()) for c in cages] == sorted(
+        (score(c, Wanted()) for c in cages), reverse=True
     )
 
 
@@ -52,9 +54,9 @@ def test_a_failing_candidate_gives_its_place_to_the_next(
 ) -> None:
     """Planted: the best candidate moved along its edges to where it holds nothing."""
     outline, candidates = slot
-    right = planned_grasps(outline, 2.0, candidates, "first", 2)
+    right = planned_grasps(outline, 2.0, candidates, Wanted(), 2)
     bad = np.array([[42.0, 3.0], [-2.0, 25.0], [5.0, -2.0]])
-    found = planned_grasps(outline, 2.0, [bad, *candidates], "first", 2)
+    found = planned_grasps(outline, 2.0, [bad, *candidates], Wanted(), 2)
     assert [c.sigma_0 for c in found.cages] == [c.sigma_0 for c in right.cages]
     assert len(found.failures) == 1
     assert found.failures[0].why
@@ -68,7 +70,7 @@ def test_what_cannot_be_planned_does_not_end_the_search(
         raise GeometryError("planted")
 
     monkeypatch.setattr("icage.grasps.planned.plan", fails)
-    found = planned_grasps(slot[0], 2.0, slot[1], "first", 1)
+    found = planned_grasps(slot[0], 2.0, slot[1], Wanted(), 1)
     assert not found.cages
     assert {failure.why for failure in found.failures} == {"it could not be planned (our fault)"}
 
@@ -113,7 +115,7 @@ def test_a_collapsed_refinement_is_none() -> None:
 @pytest.mark.slow
 def test_grasps_of_one_hand_on_the_hook() -> None:
     outline, hand, candidates = hook()
-    found = planned_grasps_of_hand(outline, 4.0, hand, candidates, "first")
+    found = planned_grasps_of_hand(outline, 4.0, hand, candidates, Wanted())
     assert len(found.cages) + len(found.failures) == len(candidates)
     assert len(found.cages) >= 20
     for cage in found.cages:
