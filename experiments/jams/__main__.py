@@ -21,7 +21,7 @@ from icage.formats.json_out import write_json
 from icage.formats.load import load
 from icage.formats.whole_files import whole_file
 from icage.kernels.compiled import long_job
-from models import CASES, HARD, grasp_cases
+from models import CASES, FRICTION, HARD, grasp_cases
 
 
 def main() -> int:
@@ -59,8 +59,9 @@ def main() -> int:
 
 
 def shipped() -> dict[str, Case]:
-    """The solved problems, the hard ones, the tools' grasps."""
+    """The solved problems, grasps made for friction, the hard ones, the tools' own grasps."""
     paths = {path.stem: path for path in sorted(CASES.glob("*.json"))}
+    paths |= {f"friction/{path.stem}": path for path in sorted(FRICTION.glob("*.json"))}
     paths |= {f"hard/{path.stem}": path for path in sorted(HARD.glob("*.json"))}
     return {name: read_case(path) for name, path in (paths | grasp_cases()).items()}
 

@@ -14,6 +14,7 @@ import numpy as np
 from experiments.cases.with_discs import PhysicalCase
 from icage.arrays import BoolArray, FloatArray
 from icage.friction.levels import FrictionLevel
+from icage.friction.nearest import nearest_jam
 from icage.sampling import Box, SamplingError, draw_starts, safe_level
 from sim.closing.batch import close_many
 from sim.closing.outcome import ClosingOutcomes
@@ -35,6 +36,9 @@ TRIES: Final = 40
 """Times more hands are drawn for the upper side than are wanted of it."""
 
 
+MEASURED: Final = 3
+"""Ends of a run whose nearest jam is looked for: a search each."""
+
 GENTLER: Final = 0.1
 """[1] Of the drive force, for closings that did not come to rest, or whose hand was pushed open
 past the level: fingers sink in by up to 5e-4 diameters when they strike, in proportion to it."""
@@ -54,6 +58,9 @@ class Ends:
         (N,) [diameter], [rad] of the ends from the target.
     residual:
         (N,) [drive_force] what is off balance at the end; nan in the target.
+    to_jam:
+        (N,) [diameter] the farthest finger's way to the nearest planned jam, for ``MEASURED`` of
+        the ends at rest outside the target; nan for the others.
     repeated:
         How many closed again, for ten times as long or at ``GENTLER``; that is what counts of them.
     penetration:
@@ -71,6 +78,7 @@ class Ends:
     position: FloatArray
     angle: FloatArray
     residual: FloatArray
+    to_jam: FloatArray
     repeated: int
     penetration: float
 
@@ -137,9 +145,11 @@ def close_from(
     began_off, began_turned = moved(scene, target, closed.start)
     lost = np.isin(closed.ending, (DIVERGED, PINCHED))
     there = (shift <= near.position) & (turn <= near.angle) & ~lost
-    off = np.full(len(starts), np.nan)
+    off, away = np.full((2, len(starts)), np.nan)
     for i in np.flatnonzero(~there & ~lost).tolist():
         off[i] = residual(held_by_engine(scene, closed.end[i]), mu)
+    for i in np.flatnonzero(~there & (closed.ending == SETTLED))[:MEASURED].tolist():
+        away[i] = nearest_jam(cage, mu, closed.end[i])[0] / cage.outline.diameter
     return Ends(
         side=side,
         mu=mu,
@@ -152,6 +162,7 @@ def close_from(
         position=shift,
         angle=turn,
         residual=off,
+        to_jam=away,
         repeated=int(repeated.sum()),
         penetration=float(closed.penetration_max.max(initial=0.0)),
     )

@@ -15,6 +15,7 @@ from experiments.jams.beside import Attacked, JamTested
 from experiments.jams.closings import Ends
 from experiments.jams.run import Judged
 from experiments.jams.settings import Changed
+from icage.arrays import FloatArray
 from sim.grip.stick import RUBBING
 
 FORMAT: Final = "icage-jams/1"
@@ -72,10 +73,16 @@ def ends_document(ends: Ends) -> dict[str, Any]:
         "repeated": ends.repeated,
         "stray": int(ends.stray.sum()),
         "residual": float(beyond.max(initial=0.0)),
+        "to_nearest_jam": _largest(ends.to_jam),
         "position_error": float(ends.position[there].max(initial=0.0)),
         "angle_error": float(ends.angle[there].max(initial=0.0)),
         "penetration": ends.penetration,
     }
+
+
+def _largest(values: FloatArray) -> float | None:
+    known = values[~np.isnan(values)]
+    return float(known.max()) if len(known) and np.isfinite(known).all() else None
 
 
 def _jam(row: Judged, tested: JamTested) -> dict[str, Any]:
@@ -143,11 +150,12 @@ def page(document: dict[str, Any], command: str) -> Iterator[str]:
         "below: ended within the tolerance of the target (0.005 diameters, 0.02 rad), of those "
         "that began below sigma_first(mu); afar: began outside that tolerance; above: ended in the "
         "target, of those that began above; stray: ended where no forces within the cones balance; "
-        "residual: largest left over at an end outside the target, over the drive force."
+        "residual: largest left over at an end outside the target, over the drive force; jam: how "
+        "far three of those ends are from the nearest planned jam, at most."
     )
     yield ""
-    yield "| case | mu | sigma_first(mu) | below | afar | above | stray | residual | deepest |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+    yield "| case | mu | sigma_first(mu) | below | afar | above | stray | residual | jam | deep |"
+    yield f"|{'---|' * 10}"
     for case in cases:
         for level in case["levels"]:
             runs = {r["side"]: r for r in case["closings"] if r["mu"] == level["mu"]}
@@ -240,6 +248,8 @@ def _closing_row(name: str, level: dict[str, Any], runs: dict[str, Any]) -> str:
         "-" if above is None else f"{above['target']}/{above['trials']}",
         str(sum(run["stray"] for run in runs.values())),
         "-" if above is None else f"{above['residual']:.0e}",
+        "-" if above is None or above["to_nearest_jam"] is None
+        else f"{above['to_nearest_jam']:.0e}",
         f"{deepest:.1e}",
     )  # fmt: skip
     return f"| {' | '.join(cells)} |"
