@@ -49,6 +49,7 @@ def _case(row: Judged) -> dict[str, Any]:
                 "mu": one.mu,
                 "sigma_first": None if one.sigma_first is None else one.sigma_first / cage.sigma_0,
                 "fingers": None if one.jam is None else one.jam.fingers,
+                "ends": {"position": one.ends.position_max, "angle": one.ends.angle_max},
             }
             for one in row.levels
         ],

@@ -18,6 +18,10 @@ from sim.world.config import SimConfig
 MUS: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8)
 """[1] From greased metal to rubber."""
 
+SOFT: Final = (1e-4, 1e-3)
+"""[diameter], [rad] An end may be so much farther from the target than the level's ``ends``: what
+counts as the target in a replay."""
+
 SAME: Final = 1e-6
 """[diameter, rad] Jams nearer to one another are one."""
 
@@ -68,6 +72,19 @@ def judge(
     return Judged(name, physical, seed, levels, tuple(ends), known, len(jams) - len(known))
 
 
+def _farther(done: Judged, one: Ends) -> Iterator[str]:
+    """Ends in the target that are farther from it than they may stop."""
+    most = next(level.ends for level in done.levels if level.mu == one.mu)
+    position = float(one.position[one.in_target].max(initial=0.0))
+    angle = float(one.angle[one.in_target].max(initial=0.0))
+    if position > most.position_max + SOFT[0] or angle > most.angle_max + SOFT[1]:
+        yield (
+            f"{done.name}: closings from below sigma_first({one.mu:g}) ended up to {position:.3g} "
+            f"diameters and {angle:.3g} rad from the target; {most.position_max:.3g} and "
+            f"{most.angle_max:.3g} are foretold"
+        )
+
+
 def below_levels(
     physical: PhysicalCase, mus: Sequence[float], trials: int, seed: int = 0
 ) -> tuple[Ends, ...]:
@@ -108,6 +125,8 @@ def _failures(done: Judged) -> Iterator[str]:
                 f"{done.name}: {int(one.in_target.sum())} of {len(one)} closings from below "
                 f"sigma_first({one.mu:g}) ended in the target (seed {done.seed})"
             )
+        if one.side == "below":
+            yield from _farther(done, one)
         if one.stray.any():
             yield (
                 f"{done.name}: {int(one.stray.sum())} of {len(one)} closings from {one.side} "
