@@ -1,8 +1,8 @@
-"""From which friction on is there a far jam, of two fingers and of three? Four grasps of the studies.
+"""From which friction on is there a far jam, of two fingers and of three? Grasps of the studies.
 
     python -m benchmarks.jam_onsets
 
-The grasps are those that `icage replay pliers` and the others run first, with their discs of 6 mm, and
+The grasps are those that `icage replay pliers` and the others run first, with discs of 6 mm, and
 the shipped case `disc_hammer`. For each, with jams of two fingers and of three apart: the least mu
 with a far jam anywhere in the target's basin, the least with one below 1.1 sigma_0, and what is
 limiting there. Bracketed to 1e-6 in mu.

@@ -160,11 +160,15 @@ class Box:
     top: float
 
     @classmethod
-    def around(cls, cage: Cage, which: StartSet) -> Box:
-        """A box that holds the set: a placement of it has each finger in the finger's region."""
+    def around(cls, cage: Cage, which: StartSet, below: float = np.inf) -> Box:
+        """A box that holds the set: a placement of it has each finger in the finger's region.
+
+        ``below`` [unit] leaves of the guaranteed set what is smaller than that: below a level with
+        friction, for one.
+        """
         which = same_set(cage, which)
         if which == "guaranteed":
-            top = safe_level(cage.sigma_first, cage.sigma_0)
+            top = min(safe_level(cage.sigma_first, cage.sigma_0), below)
             level, floor = (None if np.isinf(top) else top), cage.sigma_0
         else:
             top = safe_level(cage.sigma_max, cage.sigma_0)

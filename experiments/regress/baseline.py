@@ -41,6 +41,8 @@ TOLERANCES: Final[tuple[tuple[str, Tolerance], ...]] = (
     ("shake.play_over_law", ("relative", 0.02)),
     ("shake.", EXACT),
     ("second.", ("share", 0.2)),
+    ("friction.sigma_first", ("relative", 1e-6)),
+    ("friction.", EXACT),
 )
 """By the beginning of a key, first match; a key that none matches must be equal."""
 

@@ -9,7 +9,7 @@ from experiments.io.intervals import rate_upper
 
 HEAD: Final = (
     "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",
-    "rigid", "guided above", "measured off", "deepest", "held", "second", "verdict",
+    "rigid", "guided above", "measured off", "deepest", "held", "second", "friction", "verdict",
 )  # fmt: skip
 
 BOTH_HEAD: Final = (
@@ -24,7 +24,9 @@ LEGEND: Final = (
     "attacks below sigma_max that got the object out, of how many. guided above: attacks above it "
     "that did. measured off: where guided attacks begin to succeed, from the planner's sigma_max. "
     "deepest: finger over the diameter, closings | attacks. held: after closing, rank of the "
-    "contacts. second: the other engine's guaranteed + random escapes."
+    "contacts. second: the other engine's guaranteed + random escapes. friction: closings with "
+    "friction from below sigma_first(mu) that ended within its tolerance of the target, and how "
+    "many coefficients."
 )
 
 
@@ -91,8 +93,9 @@ def _below(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     if settings is not None:
         constant, damping = settings["solref"]
         yield (
-            f"seed {rows[0]['seed']}, no friction, time step {settings['time_step']} s, contacts "
-            f"with a time constant of {constant:g} s and a damping ratio of {damping:g}"
+            f"seed {rows[0]['seed']}, friction only where it is named, time step "
+            f"{settings['time_step']} s, contacts with a time constant of {constant:g} s and a "
+            f"damping ratio of {damping:g}"
         )
     for row in rows:
         yield from (f"{row['case']}: {sentence}" for sentence in row["failures"])
@@ -153,6 +156,7 @@ def _row(row: Mapping[str, Any]) -> tuple[str, ...]:
         _deepest(closings, attacks),
         _held(row["shake"]),
         _second(row["second"]),
+        _friction(row.get("friction")),
         _verdict(row),
     )
 
@@ -229,6 +233,13 @@ def _second(second: Mapping[str, Any] | None) -> str:
     guaranteed = second["closings"].get("guaranteed")
     closed = "-" if guaranteed is None else f"{guaranteed['target']}/{guaranteed['trials']}"
     return f"{closed} + {_escapes(second['random_below'])}"
+
+
+def _friction(runs: Sequence[Mapping[str, Any]] | None) -> str:
+    if not runs:
+        return "-"
+    target, trials = sum(run["target"] for run in runs), sum(run["trials"] for run in runs)
+    return f"{target}/{trials}, {len(runs)}"
 
 
 def _verdict(row: Mapping[str, Any]) -> str:

@@ -191,6 +191,7 @@ def _set_options(spec: MjSpec, config: SimConfig) -> None:
     option.solver = mj.mjtSolver.mjSOL_NEWTON
     option.jacobian = mj.mjtJacobian.mjJAC_DENSE
     option.cone = mj.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = config.impratio
     option.iterations = config.solver_iterations
     option.tolerance = config.solver_tolerance
     option.ccd_tolerance = _COLLISION_TOLERANCE
