@@ -7,8 +7,9 @@ has a level for it: hands drawn inside the tolerance of the best placement, half
 finger off by all of it, closed as `icage replay` closes (with friction as `python -m experiments.jams`
 does). Without friction every closing has to end in the target; with friction the middle of the
 fingers within 0.005 diameters and the hand within 0.02 rad of it, in the object's frame, which is
-what the level is for. Cases with point fingers are closed with discs (`experiments.cases.with_discs`) and placed with
-these. A case fails that has any other ending. [docs/decisions/0017-placement.md]
+what the level is for. Cases with point fingers are closed and placed with discs
+(`experiments.cases.with_discs`).
+A case fails that has any other ending. [docs/decisions/0017-placement.md]
 """
 
 from __future__ import annotations
