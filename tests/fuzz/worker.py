@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import multiprocessing
 import os
 import resource
@@ -15,6 +16,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Final
 
+import experiments.cli
 from tests.fuzz.job import PATIENCE, Job, Outcome
 
 _WARM: Final = 300.0
@@ -76,8 +78,9 @@ def serve(end: Connection) -> None:
     os.environ["ICAGE_COMPILE_BEHIND"] = "0"
     resource.setrlimit(resource.RLIMIT_DATA, (_CEILING, _CEILING))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    sys.warnoptions = ["always"]  # as `python -W always`: the command line shows them, then
     warnings.simplefilter("always")
-    with tempfile.TemporaryDirectory(prefix="icage-fuzz-") as place:
+    with tempfile.TemporaryDirectory(prefix="icage-fuzz-", dir=_in_memory()) as place:
         folder = Path(place) / "in"
         _warm(folder)
         end.send(None)
@@ -89,8 +92,14 @@ def serve(end: Connection) -> None:
             end.send(run_here(job, folder))
 
 
+def _in_memory() -> str | None:
+    """A place for small files that never reach a disk, where there is one."""
+    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+
+
 def _warm(folder: Path) -> None:
-    """Load what is loaded late, so that no job pays for it."""
+    """Load what is loaded late, so that no job pays for it, and build the parser only once."""
+    experiments.cli.parser = functools.cache(experiments.cli.parser)
     for arguments in (("plan", "pliers", "--method", "both"), ("plan", "wrench", "--json", "-")):
         run_here(Job({}, arguments), folder)
 

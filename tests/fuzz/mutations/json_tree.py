@@ -22,7 +22,7 @@ def spoiled(content: bytes, others: tuple[bytes, ...], random: Random) -> bytes:
     """The content with one to five such faults; as it is if it is no JSON."""
     try:
         tree = json.loads(content, object_pairs_hook=Pairs)
-    except ValueError:
+    except (ValueError, RecursionError):
         return content
     root: list[Any] = [tree]
     for _ in range(random.choice((1, 1, 1, 2, 5))):

@@ -53,6 +53,10 @@ THREE = "0 0 0\n1 0 0\n0 1 0\n"
         ("a.stl", "solid a\n" + FACET.format(1)[:-40] + "\nendsolid", "every facet needs three"),
         ("a.stl", "solid a\n" + FACET.format(1).replace("vertex 1 0 0", "vertex 1 0") + "endsolid",
          "every facet needs three|not three numbers"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("list uchar int v", "int v"), "no list of"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", ""), "and no lists"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", "").replace(
+            "ascii", "binary_little_endian"), "and no lists"),
         ("a.obj", "v 0 0 0\nf 1 2 9\n", "a vertex that is not there"),
         ("a.obj", "v 0 0 0\nf 0 1 1\n", "'0' is no vertex"),
         ("a.obj", "v 0 0 0\nf -2 1 1\n", "'-2' is no vertex"),
