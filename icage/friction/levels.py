@@ -24,6 +24,7 @@ from icage.friction.kernels.far import Near
 from icage.friction.kernels.jams import LeastJam, least_jam
 from icage.geometry.near_frame import NearFrame
 from icage.hand import Placement
+from icage.library_faults import geometry_told
 from icage.tolerance import JAM_THICK, LEVEL, NEAR_POSITION, NEAR_TURN
 from icage.values import Value
 
@@ -100,6 +101,7 @@ class FrictionLevel:
     tolerance: JamTolerance
 
 
+@geometry_told()
 def friction_levels(
     cage: Cage, mus: Iterable[float], tolerance: JamTolerance | None = None
 ) -> tuple[FrictionLevel, ...]:

@@ -23,10 +23,12 @@ def _png(content: bytes, random: Random) -> bytes:
         (length,) = struct.unpack(">I", content[at : at + 4])
         chunks.append((content[at + 4 : at + 8], content[at + 8 : at + 8 + length]))
         at += 12 + length
+    if not chunks:
+        return content
     k = random.randrange(len(chunks))
     kind, body = chunks[k]
     way = random.randrange(6)
-    if way == 0:  # width, height, depth, colour, interlace
+    if way == 0 and len(chunks[0][1]) == 13:  # width, height, depth, colour, interlace
         kind, head = chunks[0]
         fields = list(struct.unpack(">IIBBBBB", head))
         j = random.randrange(7)
