@@ -1,8 +1,8 @@
 """The command line: ``icage COMMAND ...``. Its exit codes are a promise.
 
-0: the question was answered. 2: bad input, wrong options, a place that takes no answer, or a machine
-or library that gave out: one line on standard error, nothing written. 1: a check that ran and
-failed, nobody reads standard output, or our fault. 130: interrupted.
+0: the question was answered. 2: bad input, wrong options, a place that takes no answer, or a
+machine or library that gave out: one line on standard error, nothing written. 1: a check that ran
+and failed, nobody reads standard output, or our fault. 130: interrupted.
 """
 
 from __future__ import annotations

@@ -72,6 +72,23 @@ def law_holds(arguments: tuple[str, ...]) -> int:
     return int(bool(found))
 
 
+def hang(arguments: tuple[str, ...]) -> int:
+    """Never come back: to try the guard."""
+    import threading
+
+    threading.Event().wait()
+    return 0
+
+
+def die(arguments: tuple[str, ...]) -> int:
+    """Take the process along, as a fault in compiled code does: to try the guard."""
+    import os
+    import signal
+
+    os.kill(os.getpid(), signal.SIGKILL)
+    return 0
+
+
 def refused(error: InputError) -> int:
     """Say it as the command line does."""
     from experiments.io.one_line import one_line
@@ -87,4 +104,6 @@ CALLS: Final[dict[str, Callable[[tuple[str, ...]], int]]] = {
     "read_cage": cage_read,
     "law": law_holds,
     "geometry": agree_or_refuse,
+    "hang": hang,
+    "die": die,
 }

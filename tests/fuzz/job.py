@@ -68,7 +68,8 @@ def fault(outcome: Outcome) -> str:
     if noise:
         return f"noise: {noise[0]}"
     errors = [line for line in lines if line.startswith("icage: error: ")]
-    if errors != (lines[-1:] if outcome.code else []):
+    told = lines[-1:] or ["none"]
+    if errors != (told if outcome.code else []):
         return f"lines: exit {outcome.code} and {lines}"
     if errors and not (errors[0].isprintable() and len(errors[0]) > len("icage: error: ") + 8):
         return f"lines: {errors[0]!r}"

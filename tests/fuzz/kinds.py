@@ -110,7 +110,9 @@ KINDS: Final[dict[str, Kind]] = {
         (("main", ("replay-trial", "out", "1")),), recorded.beside_replay_tables,
     ),
     "svg": _drawing("a.svg", drawings.svg, markup.spoiled, more=("--strokes", "drawn")),
-    "dxf": _drawing("a.dxf", drawings.dxf, dxf_tags.spoiled, text.spoiled, more=("--safe", "inside")),
+    "dxf": _drawing(
+        "a.dxf", drawings.dxf, dxf_tags.spoiled, text.spoiled, more=("--safe", "inside")
+    ),
     "stl": _drawing("a.stl", drawings.stl, text.spoiled, more=("--section", "1")),
     "obj": _drawing("a.obj", drawings.obj, text.spoiled, more=("--axis", "x")),
     "ply": _drawing("a.ply", drawings.ply, text.spoiled, more=("--section", "1e-3")),

@@ -89,8 +89,10 @@ def lawful_case(random: Random) -> Job:
     radius = random.uniform(0.01, 0.05) if random.random() < 0.2 else 0.0
     target = random_target(rng, random.choice(sorted(FAMILIES)), radius)
     document = {
-        "vertices": target.vertices.tolist(), "contacts": target.contacts.tolist(), "radius": target.radius
-    }  # fmt: skip
+        "vertices": target.vertices.tolist(),
+        "contacts": target.contacts.tolist(),
+        "radius": target.radius,
+    }
     law = random.choice(sorted(LAWS))
     return Job({"a.json": json.dumps(document).encode()},
                ("a.json", law, str(random.getrandbits(32))), "law")  # fmt: skip

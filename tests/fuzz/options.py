@@ -15,9 +15,11 @@ from tests.fuzz.seeds.drawings import dxf, svg
 _QUICK: Final = ("plan", "query", "outline")
 """Commands that are run; of the others only the options are read."""
 
-_FILES: Final = ("a.json", "a.svg", "a.dxf", "plan.json", "p.csv", "none.json", ".", "sub", "wrench",
-                 "pliers/1_best", "pliers/9", "new.json", "new.svg", "sub/new.png", "-", "",
-                 "no/new.json", "a.txt", "/dev/null", "/dev/full", "/proc/none", "a.dwg")  # fmt: skip
+_FILES: Final = (
+    "a.json", "a.svg", "a.dxf", "plan.json", "p.csv", "none.json", ".", "sub", "wrench", "a.txt",
+    "pliers/1_best", "pliers/9", "new.json", "new.svg", "sub/new.png", "-", "", "no/new.json",
+    "/dev/null", "/dev/full", "/proc/none", "a.dwg",
+)  # fmt: skip
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The process that runs jobs, one after another, and is replaced when one of them takes it along."""
+"""The process that runs jobs, one after another, and is replaced when one takes it along."""
 
 from __future__ import annotations
 

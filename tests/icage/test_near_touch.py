@@ -42,8 +42,11 @@ def test_the_width_of_slots_and_necks_decides(make: object, size: float, angle: 
 
 @settings(max_examples=60)
 @given(
-    st.integers(0, 10_000), st.sampled_from(sorted(FAMILIES)), st.floats(-17, -3), st.floats(-17, -3)
-)  # fmt: skip
+    st.integers(0, 10_000),
+    st.sampled_from(sorted(FAMILIES)),
+    st.floats(-17, -3),
+    st.floats(-17, -3),
+)
 def test_short_edges_and_nearly_straight_corners_are_no_near_touch(
     seed: int, family: str, short: float, bump: float
 ) -> None:

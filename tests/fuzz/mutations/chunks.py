@@ -8,6 +8,10 @@ from random import Random
 from typing import Final
 
 _HEAD: Final = b"\x89PNG\r\n\x1a\n"
+_CHUNKS: Final = (
+    b"tEXt", b"iTXt", b"zTXt", b"pHYs", b"gAMA", b"PLTE", b"tRNS", b"iCCP", b"acTL", b"fcTL",
+    b"eXIf", b"XXXX", b"IEND",
+)  # fmt: skip
 _SIZES: Final = (0, 1, 2, 3, 255, 256, 4_000, 65_535, 100_000, 2**31 - 1, 2**31, 2**32 - 1)
 
 
@@ -49,8 +53,7 @@ def _png(content: bytes, random: Random) -> bytes:
         pixels = random.randbytes(8) * random.choice((1, 100, 10_000, 2_000_000))
         chunks[j] = b"IDAT", zlib.compress(pixels)
     else:
-        kind = random.choice((b"tEXt", b"iTXt", b"zTXt", b"pHYs", b"gAMA", b"PLTE", b"tRNS", b"iCCP",
-                              b"acTL", b"fcTL", b"eXIf", b"XXXX", b"IEND"))  # fmt: skip
+        kind = random.choice(_CHUNKS)
         packed = zlib.compress(b"\0" * random.choice((10, 5_000_000)))
         body = random.choice((b"", random.randbytes(9), b"a\0\0" + packed, b"a\0" + packed))
         chunks.insert(1, (kind, body))

@@ -89,7 +89,8 @@ def studies() -> tuple[bytes, ...]:
         b'time_step = 1e-3\n[vary]\nfinger_radius = "-0.3%:0.3%"\noutline_scale = "0.97:1.03"\n'
         b'outline_noise = "0:0.5%"\nphi_1 = "truncated:0:0.5deg:-1.5deg:1.5deg"\nweight = 0.2\n',
         b'case = "t.json"\ntrials = 4\nuntil_half_width = 0.1\nnominal = [0.1, 0.2, 0.3, 3.0]\n'
-        b'[vary]\nplace_xy = "normal:0.2"\ntilt = "0deg:20deg"\ntilt_direction = "-180deg:180deg"\n',
+        b'[vary]\nplace_xy = "normal:0.2"\ntilt = "0deg:20deg"\n'
+        b'tilt_direction = "-180deg:180deg"\n',
     )
 
 

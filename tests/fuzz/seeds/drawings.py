@@ -35,7 +35,7 @@ def svg() -> tuple[bytes, ...]:
         '<circle id="q" cx="50" cy="40" r="9" clip-path="url(#a)"/>\n'
         '<polyline points="5 50 20 55 70 40" fill="none" stroke="black" stroke-width="3"'
         ' stroke-linecap="round" stroke-dasharray="none"/>\n'
-        '<svg x="60" y="5" width="10" height="10" viewBox="0 0 5 5"><path d="M0 0L5 0 5 5z"/></svg>\n'
+        '<svg x="60" y="5" width="10" height="10" viewBox="0 0 5 5"><path d="M0 0L5 0 5 5z"/></svg>'
         "</svg>\n"
     )
     return (many.encode(),) * 40 + tuple(one.text.encode() for one in FEATURES)

@@ -20,7 +20,8 @@ def _made_by(*command: str) -> dict[str, bytes]:
         case.write_bytes(t_json())
         program = "import sys; from experiments.cli import main; sys.exit(main())"
         subprocess.run(
-            [sys.executable, "-c", program, command[0], str(case), *command[1:], "--out", str(place / "out")],
+            [sys.executable, "-c", program, command[0], str(case), *command[1:],
+             "--out", str(place / "out")],
             check=True, cwd=Path(__file__).parents[3], capture_output=True,
         )  # fmt: skip
         return {

@@ -64,7 +64,7 @@ SIGNALLING = np.array([0x7FA00000], dtype="<u4").tobytes()
         ("a.stl", "solid a\n" + FACET.format(1)[:-40] + "\nendsolid", "every facet needs three"),
         ("a.stl", "solid a\n" + FACET.format(1).replace("vertex 1 0 0", "vertex 1 0") + "endsolid",
          "every facet needs three|not three numbers"),
-        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("list uchar int v", "int v"), "no list of"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("list uchar int v", "int v"), "no list"),
         ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", ""), "and no lists"),
         ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", "").replace(
             "ascii", "binary_little_endian"), "and no lists"),
