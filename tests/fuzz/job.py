@@ -55,6 +55,10 @@ MOST_MEMORY: Final = 1_000_000_000
 """[byte]"""
 
 
+CHECK_FAILED: Final = "icage: replay-trial failed: "
+"""A record that is no more what was recorded is found out: exit 1 is meant for that."""
+
+
 def fault(outcome: Outcome) -> str:
     """What is wrong with an outcome, one word and the reason; empty if nothing is."""
     lines = outcome.err.splitlines()
@@ -62,6 +66,8 @@ def fault(outcome: Outcome) -> str:
         return f"ended: {outcome.err[-300:]}"
     if "Traceback (most recent" in outcome.err:
         return f"traceback: {lines[-1]}"
+    if outcome.code == 1 and len(lines) == 1 and lines[0].startswith(CHECK_FAILED):
+        return ""
     if outcome.code not in (0, 2):
         return f"exit {outcome.code}: {outcome.err[-400:]}"
     noise = [line for line in lines if not line.startswith("icage: ")]

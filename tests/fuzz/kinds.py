@@ -107,7 +107,7 @@ KINDS: Final[dict[str, Kind]] = {
     ),
     "replay-table": Spoiled(
         "out/trials.parquet", recorded.replay_tables, (raw.spoiled,),
-        (("main", ("replay-trial", "out", "1")),), recorded.beside_replay_tables,
+        (("main", ("replay-trial", "out", "0")),), recorded.beside_replay_tables,
     ),
     "svg": _drawing("a.svg", drawings.svg, markup.spoiled, more=("--strokes", "drawn")),
     "dxf": _drawing(

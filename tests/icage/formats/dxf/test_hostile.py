@@ -100,6 +100,16 @@ def test_any_tag_of_an_entity_may_be_spoiled(tmp_path: Path, spoil: str):
     assert not any("\n" in said for said in refusals)
 
 
+@pytest.mark.parametrize("kind", ["ENDBLK", "BLOCK", "TABLE", "ENDTAB", "VERTEX", "SEQEND", "EOF"])
+def test_what_is_no_entity_among_entities(tmp_path: Path, kind: str):
+    content = by_hand(box() + f"0\n{kind}\n8\n0\n" + box(3, 2))
+    try:
+        found = read(tmp_path, content, unit="mm", pick="largest").outline.area
+    except FormatError as error:
+        found = str(error)
+    assert found == pytest.approx(800.0) or "\n" not in str(found)
+
+
 def test_an_insertion_of_no_block_is_refused(tmp_path: Path):
     content = with_blocks(block("A", box()), "0\nINSERT\n8\n0\n10\n0\n20\n0\n" + box())
     with pytest.raises(FormatError, match="name has to be a string"):
