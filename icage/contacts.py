@@ -101,7 +101,7 @@ _SIDES = ((0, 1), (1, 2), (0, 2))
 
 SMALLEST_HAND = 2e-7
 """[diameter] Least longest side of a hand, twice SLIDE_GIVE over PLATEAU: a smaller one, turned as
-far as SLIDE_GIVE lets it, slides by more than PLATEAU, and the methods differ in whether it holds."""
+far as SLIDE_GIVE lets it, slides by more than PLATEAU, and methods differ in whether it holds."""
 
 _TOUCHING = 1e-12
 """[1] Discs that overlap by this share of their diameter touch: the rounding of two centres."""

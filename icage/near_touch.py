@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from icage.arrays import FloatArray, IntArray
 
@@ -34,7 +35,7 @@ def near_touch(ring: FloatArray, diameter: float) -> NearTouch | None:
     """
     ends = np.roll(ring, -1, axis=0)
     least = NEAREST * diameter
-    edges = shapely.linestrings(np.stack([ring, ends], axis=1))
+    edges: NDArray[np.object_] = np.asarray(shapely.linestrings(np.stack([ring, ends], axis=1)))
     found = shapely.STRtree(edges).query(shapely.points(ring), predicate="dwithin", distance=least)
     vertex, edge = _not_incident(found, len(ring))
     if not len(vertex):

@@ -129,10 +129,12 @@ def agree_or_refuse(arguments: tuple[str, ...]) -> int:
     if "grasp" in document:
         return command(("plan", str(path), "--method", "both"))
     try:
-        found = grasps_of(document)
+        outline = Outline(document["outline"]["vertices"])
+        radius = document["finger_radius"] * outline.diameter
+        found = grasps_on(outline, radius)
     except InputError as error:
         return refused(error)
-    for contacts, radius in found:
+    for contacts in found:
         document |= {"grasp": {"contacts": contacts.tolist()}, "finger_radius": radius}
         path.with_name("b.json").write_text(json.dumps(document))
         code = command(("plan", "b.json", "--method", "both"))
@@ -141,12 +143,10 @@ def agree_or_refuse(arguments: tuple[str, ...]) -> int:
     return 0
 
 
-def grasps_of(document: dict[str, Any]) -> list[tuple[Floats, float]]:
-    """A few grasps of an object that the search takes for cages, with the radius of the fingers."""
-    outline = Outline(document["outline"]["vertices"])
-    radius = document["finger_radius"] * outline.diameter
+def grasps_on(outline: Outline, radius: float) -> list[Floats]:
+    """Contacts of a few grasps that the search takes for cages; radius in [unit]."""
     bench = GraspEvaluator(outline, radius, Wanted(limits=ANY_HAND))
     triples, points = bench.triples()
     few = np.linspace(0, len(triples) - 1, min(TRIED, len(triples)), dtype=int)
     found = [bench.at(triples[k], points[k]) for k in few]
-    return [(one.contacts, radius) for one in found if one is not None][:KEPT]
+    return [one.contacts for one in found if one is not None][:KEPT]
