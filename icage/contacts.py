@@ -13,6 +13,7 @@ from icage.arrays import FloatArray, real_numbers
 from icage.errors import GraspError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
+from icage.library_faults import geometry_told
 from icage.outline import Outline
 from icage.tolerance import CONTACT_OFF
 
@@ -58,6 +59,7 @@ def check_radius(finger_radius: object) -> float:
     return radius
 
 
+@geometry_told()
 def check_contacts(
     outline: Outline, contacts: FloatArray, finger_radius: float, unit: str = ""
 ) -> None:

@@ -15,15 +15,21 @@ _OF_GEOMETRY: Final = ("ShapelyError", "LinAlgError")
 
 @contextmanager
 def geometry_told() -> Generator[None]:
-    """Errors of the libraries that compute geometry are input errors: of the way in, a decorator.
+    """Around a way in: errors of the libraries that compute geometry are input errors, and flags
+    that they leave in the processor are no warnings.
+
+    GEOS divides by zero where it wants to; numpy would report that at whatever call of shapely.
 
     Raises
     ------
     LibraryError:
         In place of an error of shapely or of numpy's linear algebra.
     """
+    import numpy as np
+
     try:
-        yield
+        with np.errstate(all="ignore"):
+            yield
     except Exception as error:
         if {kind.__name__ for kind in type(error).__mro__}.isdisjoint(_OF_GEOMETRY):
             raise

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only, real_numbers
 from icage.errors import GeometryError, OutlineError
+from icage.library_faults import geometry_told
 from icage.near_touch import NEAREST, near_touch
 from icage.values import Value
 
@@ -90,6 +91,7 @@ class Outline(Value):
             raise GeometryError(f"a computed polygon: {error}") from error
         return outline
 
+    @geometry_told()
     def _settle(self, points: FloatArray) -> None:
         repeated = (points == np.roll(points, 1, axis=0)).all(axis=1)
         points = points[~repeated] if not repeated.all() else points[:1]
@@ -118,6 +120,7 @@ class Outline(Value):
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "polygon", polygon)
 
+    @geometry_told()
     def _check_apart(self) -> None:
         """Refuse a slit or a neck that is thinner than the planner can tell from none."""
         found = near_touch(self.vertices, self.diameter)

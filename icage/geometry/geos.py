@@ -15,13 +15,6 @@ _COARSER = (1.0, 3.0, 10.0, 100.0, 1000.0)
 """[1] Grids that are tried, over the one wanted: noding on a fine grid can fail by rounding."""
 
 
-def geos_flags() -> np.errstate:
-    """Around what GEOS computes: it leaves flags in the processor, of divisions that it wanted,
-    which numpy would report as warnings of its own.
-    """
-    return np.errstate(all="ignore")
-
-
 def union(
     parts: Sequence[shapely.Polygon] | NDArray[np.object_], grid: float, what: str
 ) -> shapely.Geometry:

@@ -183,12 +183,9 @@ def _is_no_file(path: Path) -> bool:
 @geometry_told()
 def trace_file(path: Path, reading: Reading) -> Traced:
     """The outline of a drawing in a file. Raises what ``read_drawing`` and ``traced`` raise."""
-    import numpy as np
-
     from icage.formats.drawings.trace import traced  # only now: it loads shapely
 
     try:
-        with np.errstate(all="ignore"):  # what is not finite or too large is refused by its name
-            return traced(read_drawing(path, reading), reading)
+        return traced(read_drawing(path, reading), reading)
     except InputError as error:
         raise type(error)(str(error) if str(path) in str(error) else f"{path}: {error}") from error
