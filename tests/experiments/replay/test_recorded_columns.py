@@ -1,4 +1,4 @@
-"""A table of trials whose columns are not those of a replay is told by the first that is missing."""
+"""A table of trials without the columns of a replay is told by the first that is missing."""
 
 from __future__ import annotations
 
