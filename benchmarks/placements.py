@@ -4,8 +4,8 @@
 
 For every case, with the opening known and with an error of it, and with friction where the planner
 has a level for it: hands drawn inside the tolerance of the best placement, half of them with a
-finger off by all of it, closed as `icage replay` closes (with friction as `python -m experiments.jams`
-does). Without friction every closing has to end in the target; with friction the middle of the
+finger off by all of it, closed as `icage replay` closes, or with friction as `experiments.jams`
+does. Without friction every closing has to end in the target; with friction the middle of the
 fingers within 0.005 diameters and the hand within 0.02 rad of it, in the object's frame, which is
 what the level is for. Cases with point fingers are closed and placed with discs
 (`experiments.cases.with_discs`).

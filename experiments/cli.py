@@ -1,32 +1,31 @@
 """The command line: ``icage COMMAND ...``. Its exit codes are a promise.
 
-0: the question was answered. 2: bad input, wrong options or a place that takes no answer, one line
-on standard error, nothing written. 1: a check that ran and failed, nobody reads standard output, or
-our fault. 130: interrupted.
+0: the question was answered. 2: bad input, wrong options, a place that takes no answer, or a
+machine or library that gave out: one line on standard error, nothing written. 1: a check that ran
+and failed, nobody reads standard output, or our fault. 130: interrupted.
 """
 
 from __future__ import annotations
 
 import argparse
 import atexit
-import errno
 import gc
 import os
 import pkgutil
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
-from io import TextIOWrapper
+from io import TextIOWrapper, UnsupportedOperation
 from typing import Any, NoReturn, TextIO
 
 import experiments.commands
 import icage
+from experiments.io.gave_out import what_gave_out
 from experiments.io.one_line import one_line
+from experiments.io.warnings_kept import keep_warnings
 from icage.errors import InputError
 from icage.kernels.compiling import when_compiling
-
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
-"""What a full, locked or broken disk answers."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -61,6 +60,7 @@ def parser() -> Parser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     _collect_seldom()
+    keep_warnings()
     heard = _open_streams()
     try:
         args = parser().parse_args(arguments)
@@ -78,8 +78,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if isinstance(error, SystemError) and _is_interrupt(error):
             return _interrupted()
-        if isinstance(error, OSError) and error.errno in _NO_ROOM:
-            _say(f"{error.filename or 'the answer'} cannot be written: {error.strerror}")
+        gave_out = what_gave_out(error)
+        if gave_out:
+            _say(gave_out)
             _forget_output()
             return 2
         if os.environ.get("ICAGE_DEBUG"):
@@ -118,7 +119,8 @@ def _nowhere() -> TextIO:
 
 def _forget_output() -> None:
     """Keep the interpreter from complaining, as it ends, about what standard output holds back."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    with suppress(UnsupportedOperation):  # a stream that is no file holds nothing back
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _is_interrupt(error: BaseException | None) -> bool:

@@ -28,6 +28,7 @@ from icage.cells.membership import TARGET, query
 from icage.cells.regions import outer_bounds
 from icage.errors import GeometryError, IcageError
 from icage.kernels.locate import depth_inside
+from icage.library_faults import geometry_told
 
 StartSet = Literal["guaranteed", "rest", "cage"]
 
@@ -100,6 +101,7 @@ def same_set(cage: Cage, which: StartSet) -> StartSet:
     return "guaranteed" if which == "cage" and not has_rest(cage) else which
 
 
+@geometry_told()
 def draw_starts(
     cage: Cage,
     which: StartSet,

@@ -17,6 +17,7 @@ from experiments.collection.options import SearchOptions, options_of
 from experiments.collection.rows import Row, searched_rows
 from experiments.io.cluster import Cluster, document_here
 from experiments.io.pieces import in_pool, in_threads
+from experiments.io.warnings_kept import keep_warnings
 from icage.errors import InputError
 from icage.grasps.crew import Progress
 from icage.kernels.compiled import long_job
@@ -80,6 +81,7 @@ _given_up: list[_Flag] = []
 
 def _begin(given_up: _Flag) -> None:
     """In a new process: it ends when the one that started it is gone, however that went."""
+    keep_warnings()
     _given_up.append(given_up)
     parent = parent_process()
     if parent is not None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from experiments.io.warnings_kept import keep_warnings
 from experiments.regress.baseline import (
     baseline_document,
     baseline_path,
@@ -85,7 +86,7 @@ def _all(
             report("cases", number + 1, len(entries))
     else:
         spawn = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
+        with ProcessPoolExecutor(workers, spawn, keep_warnings) as pool:
             futures = [pool.submit(one_case, entry, effort) for entry in entries]
             ended: list[Future[Done]] = []
 

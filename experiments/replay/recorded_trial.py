@@ -37,6 +37,13 @@ JSON, TRIALS = "replay.json", "trials.parquet"
 
 _POSE = ("x", "y", "theta", "sigma")
 
+_COLUMNS: Final = (
+    "run", "grasp", "set", "trial", "seed", "verdict", "outcome", "grasp_id", "steps",
+    *(f"start_{name}" for name in _POSE), *(f"end_{name}" for name in _POSE),
+    "position_error", "angle_error", "penetration_max", "penetration_rest",
+)  # fmt: skip
+"""Of a trial, as far as it is closed again and compared."""
+
 _BEFORE: Final = {"remains": 0.0, "computed_contacts": 0}
 """Settings that a replay recorded before there were such did not have."""
 
@@ -132,6 +139,9 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
         raise RecordingError(
             f"{str(folder)!r} has no trial {index}; it has {table.num_rows}, counted from 0"
         )
+    missing = [name for name in _COLUMNS if name not in table.column_names]
+    if missing:
+        raise RecordingError(f"{str(folder / TRIALS)!r} has no column {missing[0]!r}")
     row: dict[str, Any] = table.slice(index, 1).to_pylist()[0]
     try:
         run = document["runs"][row["run"]]

@@ -22,6 +22,7 @@ from icage.cells.work import CageWork, work_of
 from icage.errors import GeometryError, PlacementError
 from icage.geometry.near_frame import NearFrame
 from icage.kernels.locate import Buckets, build_buckets, cells_of, depth_inside, nodes_of
+from icage.library_faults import geometry_told
 from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
 
@@ -165,6 +166,7 @@ class Locator:
         return cells_of(self.free_space.pieces, at, self.buckets, tolerance)
 
 
+@geometry_told()
 def query(cage: Cage, placements: FloatArray) -> Answers:
     """Verdicts about placements (n, 4) = x, y, theta, sigma in the object's frame.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import pkgutil
 import signal
 import subprocess
@@ -11,7 +12,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import shapely
 
 import experiments.commands
 from experiments import cli
@@ -95,6 +98,60 @@ def test_our_own_fault_is_exit_1_with_one_line(monkeypatch: Any, capsys: Any):
     assert result.err.count("\n") == 1
     assert "ZeroDivisionError: x y" in result.err
     assert "ICAGE_DEBUG=1" in result.err
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (MemoryError(), "not enough memory"),
+        (OSError(errno.ENOMEM, "Cannot allocate memory"), "not enough memory"),
+        (OSError(errno.ENOSPC, "No space left", "a.json"), "a.json cannot be written: No space"),
+        (OSError(errno.EMFILE, "Too many open files", "a"), "too many files are open"),
+        (PermissionError(errno.EACCES, "Permission denied", "a.json"), "'a.json': Permission"),
+        (shapely.GEOSException("TopologyException: side location"), "gave up on this object: Topo"),
+        (np.linalg.LinAlgError("Singular matrix"), "gave up on this object: Singular matrix"),
+    ],
+)  # fmt: skip
+def test_what_gives_out_beneath_us_is_exit_2_with_one_line(
+    error: Exception, words: str, monkeypatch: Any, capsys: Any
+):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(error))
+    assert words in here(capsys, "plan", CASE).error_line()
+
+
+def test_memory_that_cannot_be_had_is_exit_2():
+    """As the system refuses it, and not by an exception of ours."""
+    program = (
+        "import sys, experiments.commands.plan as plan\n"
+        "from experiments.cli import main\n"
+        "plan.run = lambda args: bytearray(10**12) and 0\n"
+        f"sys.exit(main(['plan', {CASE!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "icage: error: there is not enough memory for this\n"
+
+
+WARNS = (
+    "import sys, warnings, experiments.commands.plan as plan\n"
+    "from experiments.cli import main\n"
+    "import numpy as np\n"
+    "def run(args):\n"
+    "    warnings.warn('of a library', DeprecationWarning)\n"
+    "    return int(np.float64(1e300) * np.float64(1e300) < 1.0)\n"
+    "plan.run = run\n"
+    f"sys.exit(main(['plan', {CASE!r}]))"
+)
+
+
+@pytest.mark.parametrize("shown", [False, True])
+def test_warnings_of_libraries_are_seen_by_who_asks_for_them(shown: bool):
+    options = ["-W", "always"] if shown else []
+    done = subprocess.run([sys.executable, *options, "-c", WARNS], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert ("overflow encountered" in done.stderr) == shown
+    assert ("of a library" in done.stderr) == shown
+    assert shown or done.stderr == ""
 
 
 def test_an_interrupt_inside_a_compiled_function_is_one(monkeypatch: Any, capsys: Any):
