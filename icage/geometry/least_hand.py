@@ -84,7 +84,7 @@ def _least(rows: FloatArray, levels: FloatArray, near: FloatArray) -> FloatArray
 def _least_w(
     n: FloatArray, g: FloatArray, levels: FloatArray
 ) -> tuple[FloatArray, IntArray] | None:
-    """w (2,) and the rows that hold it."""
+    """The point w (2,) and the rows that hold it there."""
     weights, chosen = _balanced(n)
     way = (weights[:, :, None] * g[chosen]).sum(axis=1)
     level = (weights * levels[chosen]).sum(axis=1)
@@ -134,7 +134,7 @@ def _choices(count: int) -> tuple[IntArray, IntArray]:
 def _place(
     n: FloatArray, levels: FloatArray, behind: IntArray, near: FloatArray
 ) -> FloatArray | None:
-    """d (2,) with n . d >= levels (m,), those ``behind`` w met exactly; the nearest one."""
+    """The nearest d (2,) with n . d >= levels (m,), those ``behind`` w met exactly."""
     if not len(behind):
         found = least_norm(n, levels - (n * near).sum(axis=1))
         return None if found is None else near + found[0]

@@ -1,4 +1,4 @@
-"""The smallest hand among half spaces: against scipy's solver, and by what makes it the smallest."""
+"""The smallest hand among half spaces: against scipy's solver, and by what makes it smallest."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def scipys(rows: FloatArray, levels: FloatArray) -> FloatArray | None:
     if inside.status == 2:
         return None
     found = minimize(
-        lambda v: v[2] ** 2 + v[3] ** 2, inside.x, jac=lambda v: np.array([0, 0, 2 * v[2], 2 * v[3]]),
+        lambda v: v[2] ** 2 + v[3] ** 2, inside.x, jac=lambda v: v * [0.0, 0.0, 2.0, 2.0],
         constraints={"type": "ineq", "fun": lambda v: rows @ v - levels, "jac": lambda v: rows},
         method="SLSQP", options={"ftol": 1e-15, "maxiter": 500},
     )  # fmt: skip
