@@ -12,7 +12,6 @@ from experiments.environment import ROOT
 from experiments.io.code_digest import _NOT, DECIDES, _sources, code_digest, digest_of
 from experiments.io.versions import said_of_code
 
-
 ONE = ("icage/**/*.py",)
 
 

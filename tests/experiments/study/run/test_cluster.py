@@ -218,7 +218,8 @@ def changed(table: Any, name: str, value: Any) -> Any:
     at = table.column_names.index(name)
     column = table[name].to_pylist()
     column[2] = value
-    return table.set_column(at, table.schema.field(at), pa.array([column], table.schema[at].type))
+    field = table.schema.field(at)
+    return table.set_column(at, field, pa.array(column, field.type))
 
 
 @pytest.mark.parametrize(
@@ -233,7 +234,7 @@ def changed(table: Any, name: str, value: Any) -> Any:
         (lambda table: bytes_of(table.slice(1)), "4 rows instead of 5"),
         (lambda table: bytes_of(changed(table, "trial", 8)), "trials are others"),
         (lambda table: bytes_of(changed(table, "outcome", "\x1b[2J")), "outcomes are none"),
-        (lambda table: bytes_of(changed(table, "place_xy", 1.0)), "not what the study draws"),
+        (lambda table: bytes_of(changed(table, "outline_scale", 1.0)), "not what the study draws"),
     ],
 )
 def test_what_a_worker_sends_is_not_believed(folder: Path, send: Any, words: str):
