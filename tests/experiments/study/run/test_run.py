@@ -238,9 +238,10 @@ def test_other_code_of_the_same_version_is_refused_or_said(study: Studied):
     assert study.resume("--any-code", "--trials", "25").code == 0
     assert study.table.slice(0, 20).equals(before)
     assert (study.document["versions"]["code"], study.document["other_code"]) == (mine, [old])
-    assert f"Rows of other code of the same version were taken: {old}." in (
-        study.path / "results.md"
-    ).read_text()
+    assert (
+        f"Rows of other code of the same version were taken: {old}."
+        in (study.path / "results.md").read_text()
+    )
     assert study.resume("--trials", "30").code == 0  # what was said is said on
     assert study.document["other_code"] == [old]
 
