@@ -12,10 +12,11 @@ from multiprocessing import connection, get_context, parent_process
 from threading import Event, Thread
 from typing import Any, Protocol, TypeAlias
 
-from experiments.collection.objects import Readable
+from experiments.collection.objects import Readable, readable_of
 from experiments.collection.options import SearchOptions, options_of
-from experiments.collection.rows import Row, searched_rows
-from experiments.io.cluster import Cluster, document_here
+from experiments.collection.rows import COLUMNS, Row, searched_rows, table_of
+from experiments.io.arrow_bytes import bytes_of, table_in
+from experiments.io.cluster import Cluster, Work, document_here
 from experiments.io.pieces import in_pool, in_threads
 from experiments.io.warnings_kept import keep_warnings
 from icage.errors import InputError
@@ -99,7 +100,7 @@ def _search(text: str, one: Readable) -> list[Row]:
     return searched_rows(one, _options(text), _until(_given_up[0]))
 
 
-def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
+def on_cluster(address: str, document: Mapping[str, Any], any_code: bool = False) -> Backend:
     """An object a thread of the workers of the scheduler at ``tcp://HOST:PORT``.
 
     Raises
@@ -107,10 +108,12 @@ def on_cluster(address: str, document: Mapping[str, Any]) -> Backend:
     ClusterError:
         As ``experiments.io.cluster.Cluster``.
     """
-    cluster = Cluster(address, document)
+    cluster = Cluster(address, document, any_code)
+    most = options_of(document).top
+    work = Work(run_remote, Readable.document, lambda one, data: rows_in(data, one, most), _name)
 
     def backend(objects: Iterable[Readable]) -> Generator[tuple[Readable, list[Row]]]:
-        yield from cluster.run(run_remote, objects, _name)
+        yield from cluster.run(work, objects)
 
     return backend
 
@@ -119,9 +122,30 @@ def _name(one: Readable) -> str:
     return f"the search of {one.file}"
 
 
-def run_remote(text: str, one: Readable) -> list[Row]:
+def run_remote(text: str, asked: str) -> bytes:
     """On a worker: the rows of an object, for the options of this document."""
-    return searched_rows(one, _options(text))
+    one = readable_of(json.loads(asked))
+    return bytes_of(table_of(searched_rows(one, _options(text))))
+
+
+def rows_in(data: Any, one: Readable, most: int) -> list[Row]:
+    """The rows of an object that a worker has sent.
+
+    Raises
+    ------
+    ValueError:
+        They are none of a table of grasps, or another object's.
+    """
+    rows: list[Row] = table_in(data, COLUMNS, most=most).to_pylist()
+    mine = {"file": one.file, "digest": one.digest, "seed": one.seed}
+    for row in rows:
+        if {name: row[name] for name in mine} != mine:
+            raise ValueError("its rows are of another object")
+    if rows[0]["rank"] is not None and [row["rank"] for row in rows] != [*range(1, len(rows) + 1)]:
+        raise ValueError("its ranks are in no order")
+    if any(row["why"] is not None and not row["why"].isprintable() for row in rows):
+        raise ValueError("its reasons cannot be printed")
+    return rows
 
 
 @lru_cache(maxsize=4)

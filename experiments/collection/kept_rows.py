@@ -19,6 +19,7 @@ from experiments.io.arrow_table import Table
 from experiments.io.changes import changes
 from experiments.io.held_folder import held_folder, writable
 from experiments.io.parquet_files import read_table, words_of, write_table
+from experiments.io.versions import CODE, hint_of_code, said_of_code
 from icage.errors import InputError
 from icage.formats.whole_files import leftovers
 
@@ -35,6 +36,8 @@ class KeptRows:
 
     table: Path
     document: dict[str, Any]
+    any_code: bool = False
+    """Rows of other code of the same version are taken, and said in the document."""
 
     @property
     def parts(self) -> Path:
@@ -87,20 +90,23 @@ class KeptRows:
         return found
 
     def _add(self, table: Table, found: Known, place: str) -> None:
+        free = (CODE,) if self.any_code else ()
         try:
             old: dict[str, Any] = json.loads(words_of(table)[_KEY])
             lines = [
                 *changes({"format": old["format"]}, {"format": self.document["format"]}),
                 *changes(old["options"], self.document["options"]),
-                *changes(old["versions"], self.document["versions"], shown=str),
+                *changes(old["versions"], self.document["versions"], free, str),
             ]
+            hint = hint_of_code(old["versions"], self.document["versions"])
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(f"--out {place!r}: its own words cannot be read: {error!r}") from error
         if lines:
             raise InputError(
                 f"--out {place!r} holds another search: {'; '.join(lines)}; name another file, or "
-                "remove it"
+                f"remove it{hint}"
             )
+        self.document.update(said_of_code(old, self.document, self.any_code))
         mine: Known = {}
         for row in table.to_pylist():
             mine.setdefault((row["file"], row["digest"]), []).append(row)

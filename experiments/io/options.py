@@ -6,6 +6,7 @@ import argparse
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from icage.errors import InputError, OutputError
 from icage.formats.whole_files import check_folder_writable, check_writable
@@ -80,6 +81,16 @@ def add_json(parser: argparse.ArgumentParser) -> None:
         metavar="FILE|-",
         type=lambda text: "-" if text == "/dev/stdout" else text,
         help="write the answer as JSON, - for standard output; otherwise a summary is printed",
+    )
+
+
+def add_any_code(parser: Any) -> None:
+    """``--any-code``."""
+    parser.add_argument(
+        "--any-code",
+        action="store_true",
+        help="take what other sources of the same version have computed, before or on other "
+        "machines; the record says so",
     )
 
 

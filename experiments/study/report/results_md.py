@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
 from experiments.io.outcome_words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
+from experiments.io.versions import ANY_CODE, OTHER_CODE
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.method import method
 from experiments.study.report.names import display, merged, percent
@@ -49,6 +50,9 @@ def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     yield from method(document)
     yield ""
     yield "Versions: " + ", ".join(f"{k} {v}" for k, v in document["versions"].items()) + "."
+    if document.get(ANY_CODE):
+        known = ", ".join(document.get(OTHER_CODE, ())) or "none is known"
+        yield f"Rows of other code of the same version were taken: {known}."
     yield ""
     yield "## Command"
     yield ""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from experiments.io.changes import changes
-from experiments.io.versions import versions
+from experiments.io.versions import CODE, versions
 from experiments.study.inputs.config import StudyConfig
 from experiments.study.inputs.distributions import Distribution
 from experiments.study.run.shard import Study
@@ -110,9 +110,13 @@ def _array(rows: Any) -> Any:
 
 
 def fingerprint(document: Mapping[str, Any]) -> str:
-    """What two shards of one study have in common: config, case and versions, not its length."""
+    """What two shards of one study have in common: config, case and versions, not its length.
+
+    Nor its code: a study goes on with other code if it is told to, and says so.
+    """
     config = {k: v for k, v in document["config"].items() if k not in _loose(document)}
-    kept = {key: document[key] for key in ("name", "unit", "case", "versions")}
+    kept = {key: document[key] for key in ("name", "unit", "case")}
+    kept["versions"] = {k: v for k, v in document["versions"].items() if k != CODE}
     text = json.dumps({**kept, "config": config}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -126,7 +130,9 @@ def _loose(document: Mapping[str, Any]) -> tuple[str, ...]:
     return ("case", "grasp", *grows)
 
 
-def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+def differences(
+    old: Mapping[str, Any], new: Mapping[str, Any], any_code: bool = False
+) -> list[str]:
     """Why a study cannot go on with another's shards, in words.
 
     Raises
@@ -137,16 +143,18 @@ def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     check_format(old)
     lines: list[str] = []
     try:
-        lines += _differences(old, new)
+        lines += _differences(old, new, (CODE,) if any_code else ())
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"not a study's document: {error!r}") from error
     return lines
 
 
-def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
+def _differences(
+    old: Mapping[str, Any], new: Mapping[str, Any], free: tuple[str, ...]
+) -> Iterator[str]:
     yield from changes(old["config"], new["config"], _loose(new))
     if old["name"] != new["name"]:
         yield f"the case was {old['name']!r}, is {new['name']!r}"
     if old["case"] != new["case"] or old["unit"] != new["unit"]:
         yield "the case is another one"
-    yield from changes(old["versions"], new["versions"], shown=str)
+    yield from changes(old["versions"], new["versions"], free, str)

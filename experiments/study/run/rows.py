@@ -32,11 +32,11 @@ def table_of(study: Study, ran: Ran) -> Table:
         **_pose("meant", ran.meant),
         **_pose("start", ran.starts),
         **{name: ran.values[name] for name in study.design.names},
-        "verdict": pa.array([VERDICTS[k] for k in answers.verdict]),
+        "verdict": pa.array([VERDICTS[k] for k in answers.verdict], pa.string()),
         "in_cage": answers.in_cage,
         "margin": _known(answers.margin),
         "target_margin": _known(answers.target_margin),
-        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome]),
+        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome], pa.string()),
         "grasp_id": ran.grasp_id,
         **{
             f"end_{name}": of_closings(closings.end[:, k])

@@ -17,6 +17,7 @@ from experiments.io.arrow_table import Table
 from experiments.io.options import check_folder
 from experiments.io.pieces import cores
 from experiments.io.progress import stage_bar
+from experiments.io.versions import hint_of_code, said_of_code
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
 from experiments.study.inputs.fields import DRAWING
 from experiments.study.report.summary import sentence, summary
@@ -50,9 +51,13 @@ class Session:
     shard: int
     chosen: Chosen | None = None
     """The grasp that was searched, for an object that came without one."""
+    any_code: bool = False
+    """What other code of the same version has computed is taken."""
 
 
-def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: int) -> Session:
+def session_of(
+    given: Mapping[str, Any], out: str | None, resume: bool, shard: int, any_code: bool = False
+) -> Session:
     """Check everything before anything runs.
 
     Raises
@@ -101,9 +106,11 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         study = Study(study_config(table, physical.case), physical.case, physical.cage)
     document = study_document(study)
     if old is not None:
-        lines = differences(old, document)
+        lines = differences(old, document, any_code)
         if lines:
-            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}")
+            hint = hint_of_code(old["versions"], document["versions"])
+            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}{hint}")
+    document |= said_of_code(old, document, any_code)
     folder = StudyFolder(path, fingerprint(document))
     kept = folder.beyond(study.design.total)
     if kept:
@@ -111,7 +118,7 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
             f"trials is {study.config.trials}, but --out {out!r} holds {kept} already, and none is "
             f"thrown away; {kept} or more is needed, or another folder"
         )
-    return Session(study, document, folder, shard, found)
+    return Session(study, document, folder, shard, found, any_code)
 
 
 def _only_trials(table: Mapping[str, Any]) -> int | None:
@@ -195,7 +202,7 @@ def _backend(session: Session, threads: int | None, scheduler: str | None) -> Ba
         return on_threads(threads or cores())
     from experiments.study.run.cluster import on_cluster
 
-    return on_cluster(scheduler, session.document)
+    return on_cluster(scheduler, session.document, session.any_code)
 
 
 def _write_page(document: dict[str, Any], folder: Path) -> None:
