@@ -20,8 +20,8 @@ from icage.formats.json_out import json_text
 PAGE: Final = Path(__file__).parent / "page"
 
 MODULES: Final = (
-    "svg.js", "query.js", "hand.js", "words.js", "verdict.js", "scale.js", "view.js", "stage.js",
-    "route.js", "places.js", "friction.js", "explore.js",
+    "svg.js", "query.js", "hand.js", "words.js", "verdict.js", "scale.js", "view.js", "gestures.js",
+    "stage.js", "route.js", "places.js", "friction.js", "numbers.js", "texts.js", "explore.js",
 )  # fmt: skip
 """Files of the module, each after those that it imports."""
 
@@ -112,7 +112,7 @@ _TEMPLATE = """<!DOCTYPE html>
 </head>
 <body>
 <div id="icage" class="icage"><noscript><pre>{summary}</pre>
-<p>This page answers questions about the hand by a script, which does not run here.</p></noscript></div>
+<p>This page answers by a script, which does not run here.</p></noscript></div>
 <script type="application/json" id="icage-data">{data}</script>
 <script type="module">{script}</script>
 </body>
