@@ -11,6 +11,7 @@ import shapely
 from experiments.explore.encoded import doubles, indices
 from experiments.figures.drawing.shapes import polygons_of, tidied
 from experiments.figures.plan import figure_regions
+from experiments.io.one_line import one_line
 from icage.cage import Cage
 from icage.cells.query_tables import QueryTables
 from icage.cells.regions import FingerRegion
@@ -33,8 +34,11 @@ def explore_document(
     friction: Sequence[FrictionLevel] = (),
     tolerance: JamTolerance | None = None,
 ) -> dict[str, Any]:
-    """The document ``icage-explore/1``; lengths in ``unit``. [docs/formats.md, icage explore]"""
-    plan = plan_document(cage, (), name, unit)
+    """The document ``icage-explore/1``; lengths in ``unit``. [docs/formats.md, icage explore]
+
+    In the name, marks that nobody sees (of the direction of writing, say) become escapes.
+    """
+    plan = plan_document(cage, (), one_line(name), unit)
     del plan["regions"]  # those of the page are simpler, and say so by another key
     if friction and tolerance is not None:
         plan.update(friction_document(friction, tolerance))

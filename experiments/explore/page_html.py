@@ -13,7 +13,6 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from experiments.io.one_line import one_line
 from icage.errors import InputError
 from icage.formats.json_out import json_text
 
@@ -21,7 +20,8 @@ PAGE: Final = Path(__file__).parent / "page"
 
 MODULES: Final = (
     "svg.js", "query.js", "hand.js", "words.js", "verdict.js", "scale.js", "view.js", "gestures.js",
-    "stage.js", "route.js", "places.js", "friction.js", "numbers.js", "texts.js", "explore.js",
+    "slice.js", "stage.js", "route.js", "places.js", "friction.js", "numbers.js", "texts.js",
+    "explore.js",
 )  # fmt: skip
 """Files of the module, each after those that it imports."""
 
@@ -59,7 +59,7 @@ def page_html(document: dict[str, Any], summary: str) -> str:
         The page would have more than ``LARGEST`` characters.
     """
     script, style = module_text() + _START, style_text()
-    name = one_line(str(document["plan"]["name"])) or "object"
+    name = document["plan"]["name"] or "object"
     html = _TEMPLATE.format(
         policy=_policy(script, style),
         title=escape(f"{name}: how far may the hand open?"),

@@ -26,7 +26,7 @@ export function mount(element, data, ask = queryOf(data)) {
   let at = standAt(target), chosen = target;
 
   const taken = (wanted) => { route.stop(); leave(); place(wanted); };
-  const stage = stageOf(page, (wanted) => (wanted === null ? goTo(target) : taken(wanted)));
+  const stage = stageOf(page, ask, (wanted) => (wanted === null ? goTo(target) : taken(wanted)));
   const card = verdictCard(page);
   const scale = levelScale(page, (sigma) => taken(reshaped(unit, at, at.theta, sigma)));
   const numbers = placementFields(page, taken);

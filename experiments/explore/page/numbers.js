@@ -7,6 +7,10 @@ import { degrees, radians } from "./words.js";
 /** { element, show(at) }; `wanted(at)` is told of a placement typed in. */
 export function placementFields(page, wanted) {
   const { plan } = page, unit = plan.unit ? ` [${plan.unit}]` : "";
+  // to a hundred-thousandth of the object, as number fields take them
+  const decimals = 4 - Math.floor(Math.log10(plan.diameter));
+  const written = (value) => String(Number(
+    decimals > 12 ? value.toPrecision(6) : value.toFixed(Math.max(1, decimals))));
   const step = 10 ** (Math.floor(Math.log10(plan.diameter)) - 2);
   const fields = {
     x: field("x", `x${unit}`, step), y: field("y", `y${unit}`, step),
@@ -57,7 +61,3 @@ export function placementFields(page, wanted) {
   }
 }
 
-/** Seven digits, as a number field takes them. */
-function written(value) {
-  return String(Number(value.toPrecision(7)));
-}

@@ -15,7 +15,7 @@ export function placesOf(plan) {
   const punctures = plan.punctures.map((puncture, k) => ({
     key: `puncture ${k}`, kind: "puncture", sigma: puncture.sigma, contacts: puncture.contacts,
     name: puncture.kind === "escape" ? "Escape puncture" : `Puncture ${k + 1}`,
-    about: puncture.kind === "escape" ? "here the object gets out"
+    about: puncture.kind === "escape" ? "the way out"
       : `joins grasp ${listed(puncture.joins)}`,
   }));
   const nothing = { key: "contacts", kind: "grasp", sigma: plan.sigma_0, contacts: plan.contacts,

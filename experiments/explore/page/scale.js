@@ -21,7 +21,13 @@ export function levelScale(page, opened) {
   let current = low;
   drawFixed();
   listen();
-  return { element: html("div", { class: "scale" }, drawing), show };
+  const step = (high - low) / 200;
+  const button = (sign, words, by) => html("button", { type: "button", "aria-label": words,
+    on: { click: () => opened(Math.max(0, current + by)) } }, sign);
+  const element = html("div", { class: "scale" }, drawing,
+    html("div", { class: "steps" }, button("−", "Close the hand a little", -step),
+      html("span", { "aria-hidden": true }, "σ"), button("+", "Open the hand a little", step)));
+  return { element, show };
 
   function drawFixed() {
     const first = plan.sigma_first ?? plan.sigma_max ?? high, last = plan.sigma_max ?? high;
@@ -93,8 +99,8 @@ export function levelScale(page, opened) {
     });
     drawing.addEventListener("keydown", (event) => {
       const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
-      const step = (high - low) / (event.shiftKey ? 2000 : 200);
-      if (event.key in steps) opened(Math.max(0, current + steps[event.key] * step));
+      const by = event.shiftKey ? 0.1 * step : step;
+      if (event.key in steps) opened(Math.max(0, current + steps[event.key] * by));
       else if (event.key === "Home") opened(low);
       else if (event.key === "End") opened(high);
       else return;

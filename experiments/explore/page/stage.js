@@ -3,6 +3,7 @@
 
 import { listenToHand } from "./gestures.js";
 import { fingersAt, middleOf } from "./hand.js";
+import { sliceOf } from "./slice.js";
 import { html, setAll, svg } from "./svg.js";
 import { boxesOf, pairs, ringsPath, roundLength, viewOf } from "./view.js";
 
@@ -11,17 +12,18 @@ const LEAST = 4.5; // [px] least radius of a finger
 const NUMBER_FITS = 8; // [px] a finger from this radius on carries its number inside
 const GRIP = 30; // [px] the hand can be taken this near to its middle, however small it is
 
-/** { element, show(at, answer, ghosts), showRoute(rows), focus() }; `wanted(at)` asks for a place. */
-export function stageOf(page, wanted) {
+/** { element, show(at, answer, ghosts), showRoute(rows), focus() }; `wanted(at)` asks for a place, `ask(at)` answers. */
+export function stageOf(page, ask, wanted) {
   const { plan } = page, boxes = boxesOf(page), unit = plan.hand.unit_fingers;
-  const fixed = svg("g"), route = svg("g"), others = svg("g");
+  const regions = svg("g"), object = svg("g"), route = svg("g"), others = svg("g");
   const hand = handDrawing(unit.length);
+  const choice = viewChoice(boxes, () => laidOut()), slice = sliceOf(page, ask, (on) => drawing.classList.toggle("slicing", on));
   const drawing = svg("svg", {
     class: "drawing", tabindex: 0, role: "application", "aria-label": "Hand round the object",
     "aria-roledescription": "hand that can be moved", "aria-describedby": `${page.id}-keys`,
-  }, fixed, route, others, hand.element);
-  const choice = viewChoice(boxes, () => laidOut());
-  const element = html("div", { class: "stage" }, choice.element, drawing);
+  }, regions, object, slice.element, route, others, hand.element);
+  const element = html("div", { class: "stage" },
+    html("div", { class: "tools" }, choice.element, slice.toggle, slice.note), drawing);
   let view = null, state = null, rows = null;
   new ResizeObserver(laidOut).observe(element);
   listenToHand({
@@ -37,7 +39,8 @@ export function stageOf(page, wanted) {
     const tall = Math.round(Math.min(Math.max(wide * shape, 0.6 * wide, 280), 620, 1.1 * wide));
     view = { ...viewOf(box, wide, tall), box };
     setAll(drawing, { viewBox: `0 0 ${wide} ${tall}`, height: tall });
-    fixed.replaceChildren(...regionsAndObject(page, view), ...scaleBar(view, plan.unit));
+    regions.replaceChildren(...regionPaths(page, view));
+    object.replaceChildren(outlinePath(plan, view), ...scaleBar(view, plan.unit));
     drawRoute();
     if (state) show(...state);
   }
@@ -56,6 +59,7 @@ export function stageOf(page, wanted) {
   function show(at, answer, ghosts) {
     state = [at, answer, ghosts];
     if (!view) return;
+    slice.show(at, view);
     const r = plan.finger_radius * view.zoom;
     hand.show(fingersAt(unit, at).map(view.to), r, at.theta, answer, view);
     others.replaceChildren(...ghosts.flatMap(({ contacts, kind }) => (
@@ -83,18 +87,19 @@ function viewChoice(boxes, chosen) {
   }
 }
 
-/** The regions, the lower level on top, and the object. */
-function regionsAndObject({ plan, document: data }, view) {
+function outlinePath(plan, view) {
+  return svg("path", { d: ringsPath(view, [plan.outline.vertices]), class: "object" });
+}
+
+/** The regions, the lower level on top. */
+function regionPaths({ plan, document: data }, view) {
   // where sigma_first and sigma_max are one, the region is that of the guarantee
   const whole = plan.sigma_max !== null && plan.sigma_first === plan.sigma_max ? "sure" : "whole";
   const sorted = ["sigma_max", "all", "sigma_first"].flatMap((level) => (
     data.drawn_regions.filter((region) => region.level === level)));
-  return [
-    ...sorted.map(({ finger, level, rings }) => svg("path", {
-      d: ringsPath(view, rings), class: `region f${finger} ${level === "sigma_first" ? "sure" : whole}`,
-    })),
-    svg("path", { d: ringsPath(view, [plan.outline.vertices]), class: "object" }),
-  ];
+  return sorted.map(({ finger, level, rings }) => svg("path", {
+    d: ringsPath(view, rings), class: `region f${finger} ${level === "sigma_first" ? "sure" : whole}`,
+  }));
 }
 
 function scaleBar(view, unit) {
@@ -125,10 +130,10 @@ function handDrawing(count) {
   const fill = svg("polygon", { class: "grip" }), reach = svg("circle", { class: "reach", r: GRIP });
   const fingers = Array.from({ length: count }, (_, k) => (
     svg("g", { class: `finger f${k + 1}` }, svg("circle"), svg("text"))));
-  const stem = svg("line", { class: "stem" });
+  const stem = svg("line", { class: "stem" }), cross = svg("path", { class: "cross", d: "M-6 0H6M0 -6V6" });
   const knob = svg("g", { class: "knob" }, svg("circle", { r: 22, class: "reach" }),
     svg("circle", { r: 10 }), svg("path", { d: "M-4.2 1.8A4.6 4.6 0 1 1 .8 4.5M3.6 1.9L.6 4.6L3.4 7" }));
-  const element = svg("g", { class: "hand" }, stem, reach, fill, ...fingers, knob);
+  const element = svg("g", { class: "hand" }, stem, reach, fill, cross, ...fingers, knob);
   let side = -0.5, held = false, middle = [0, 0];
   return { element, knob, middle: () => middle, holdKnob: (now) => { held = now; }, show };
 
@@ -138,6 +143,7 @@ function handDrawing(count) {
     element.dataset.verdict = answer.verdict;
     setAll(fill, { points: inPixels(places) });
     setAll(reach, { cx: middle[0], cy: middle[1] });
+    setAll(cross, { transform: `translate(${middle[0].toFixed(2)} ${middle[1].toFixed(2)})` });
     places.forEach((place, k) => {
       fingers[k].classList.toggle("inside", answer.inside.includes(k + 1));
       drawFinger(k, place, r);
@@ -157,15 +163,17 @@ function handDrawing(count) {
   }
 
   function drawKnob(places, r, theta, view) {
-    const far = Math.max(...places.map(([x, y]) => Math.hypot(x - middle[0], y - middle[1])));
-    const reach = far + r + KNOB;
     const spotAt = (quarter) => {
-      const angle = theta + quarter * Math.PI;
-      return [middle[0] + reach * Math.cos(angle), middle[1] - reach * Math.sin(angle)];
+      const ahead = theta + quarter * Math.PI, ux = Math.cos(ahead), uy = -Math.sin(ahead);
+      const far = Math.max(...places.map(([x, y]) => (x - middle[0]) * ux + (y - middle[1]) * uy));
+      const reach = Math.max(far + r, GRIP - 8) + KNOB;
+      return [middle[0] + reach * ux, middle[1] + reach * uy];
     };
     const seen = ([x, y]) => x > 16 && y > 16 && x < view.wide - 16 && y < view.tall - 16;
     if (!held) side = [-0.5, 0.5, 1, 0].find((quarter) => seen(spotAt(quarter))) ?? -0.5;
-    const [x, y] = spotAt(side);
+    const spot = spotAt(side);
+    const x = Math.min(view.wide - 16, Math.max(16, spot[0]));
+    const y = Math.min(view.tall - 16, Math.max(16, spot[1]));
     setAll(knob, { transform: `translate(${x.toFixed(2)} ${y.toFixed(2)})` });
     setAll(stem, { x1: middle[0], y1: middle[1], x2: x, y2: y });
   }

@@ -2,7 +2,7 @@
 // not at every step of a drag.
 
 import { html, setAll, svg } from "./svg.js";
-import { MEANINGS, collisionWords, listed } from "./words.js";
+import { MEANINGS, NO_CAGE, collisionWords, listed } from "./words.js";
 
 const QUIET_AFTER = 500; // [ms] at rest before it is read out
 
@@ -10,7 +10,7 @@ const SIGNS = {
   target: ["M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z", "M12 9a3 3 0 1 0 0 6a3 3 0 1 0 0-6z"],
   caged: ["M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z"],
   other: ["M4 4h16v16h-16z", "M9 12h6"],
-  escapes: ["M9 4a9 9 0 1 0 0 16", "M10 12h12", "M17 7l5 5l-5 5"],
+  escapes: ["M15.5 3.8a8.9 8.9 0 1 0 0 16.4", "M10 12h12", "M18 8l4 4l-4 4"],
   collision: ["M5 5l14 14", "M19 5l-14 14"],
 };
 
@@ -33,8 +33,7 @@ export function verdictCard(page) {
     setAll(sign, { "data-verdict": answer.verdict });
     sign.replaceChildren(...SIGNS[answer.verdict].map((d) => svg("path", { d })));
     word.textContent = answer.verdict;
-    meaning.textContent =
-      answer.verdict === "collision" ? collisionWords(answer.inside) : MEANINGS[answer.verdict];
+    meaning.textContent = meaningOf(answer);
     const margins = marginsOf(answer, friction);
     rows.replaceChildren(...margins.map((parts) => html("li", {}, ...parts.map((part, k) => (
       html(k === 1 ? "b" : "span", {}, part))))));
@@ -44,6 +43,13 @@ export function verdictCard(page) {
     waiting = setTimeout(() => {
       if (spoken.textContent !== sentence) spoken.textContent = sentence;
     }, QUIET_AFTER);
+  }
+
+  function meaningOf({ verdict, inside }) {
+    if (verdict === "collision") return collisionWords(inside);
+    // there are no cells of a cage to look into, and no others were searched
+    if (plan.verdict === "not_a_cage") return NO_CAGE;
+    return MEANINGS[verdict];
   }
 
   /** Lines [words, value, words]: by how much the hand may still open, and until what. */

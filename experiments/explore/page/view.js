@@ -39,7 +39,7 @@ export function boxesOf(page) {
   const outline = boxOf(plan.outline.vertices);
   const all = boxOf([[near[0], near[1]], [near[2], near[3]], [outline[0], outline[1]],
     [outline[2], outline[3]]]);
-  return { near: widened(near, 0.16 * span), all: widened(all, 0.16 * span) };
+  return { near: widened(near, 0.18 * span), all: widened(all, 0.18 * span) };
 }
 
 /** A path of closed rings. */

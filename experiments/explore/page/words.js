@@ -8,6 +8,9 @@ export const MEANINGS = {
   escapes: "The object can leave without the hand opening any further.",
 };
 
+/** What is said of a hand where the contacts are no cage. */
+export const NO_CAGE = "These contacts hold nothing, and what else might hold the object was not asked.";
+
 /** What a collision says: which fingers. */
 export function collisionWords(fingers) {
   if (fingers.length === 1) return `Finger ${fingers[0]} stands inside the object.`;
@@ -32,7 +35,7 @@ export function lengthWriter(diameter, levels) {
     .filter((gap) => gap > 1e-8 * diameter);
   const least = Math.min(diameter, ...apart);
   const usual = 4 - size;
-  const digits = Math.max(0, Math.min(usual + 4, Math.max(usual, Math.ceil(-Math.log10(least)) + 1)));
+  const digits = Math.max(0, Math.min(usual + 4, Math.max(usual, Math.ceil(-Math.log10(least)))));
   const resolved = 10 ** -digits;
   return (value) => {
     if (value === 0) return "0";
