@@ -18,9 +18,10 @@ import { lengthWriter } from "./words.js";
  * Fills an element with the page of a document `icage-explore/1`. What comes back asks and moves:
  * { query(at), placement(), place(at) } with placements { x, y, theta, sigma }.
  *
- * `ask` answers about a placement; without it the tables of the document do.
+ * `ask(at)` answers about a placement; without it the tables of the document do. `placed(at, answer)`
+ * is told wherever the hand is put.
  */
-export function mount(element, data, ask = queryOf(data)) {
+export function mount(element, data, { ask = queryOf(data), placed = () => {} } = {}) {
   const page = pageOf(data), { plan } = page, unit = plan.hand.unit_fingers;
   const target = page.places[0];
   let at = standAt(target), chosen = target;
@@ -64,6 +65,7 @@ export function mount(element, data, ask = queryOf(data)) {
     card.show(answer, rubbing);
     scale.show(at.sigma, answer.verdict, rubbing);
     numbers.show(at);
+    placed(at, answer);
   }
 }
 

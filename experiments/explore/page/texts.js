@@ -56,7 +56,7 @@ export function legend({ plan, document: data }) {
 export function hints({ id }) {
   const keys = KEYS.map(([key, does]) => html("div", {}, html("dt", {}, key), html("dd", {}, does)));
   return html("div", { class: "hints", id: `${id}-keys` },
-    html("p", { class: "note" }, "Drag the hand; turn it by its knob or with the wheel over it. Two fingers move, "
-      + "turn and open it. The scale opens and closes it. With the drawing in focus:"),
+    html("p", { class: "note" }, "Drag the hand; turn it by its knob, or with the wheel over it; the scale of σ opens "
+      + "and closes it. On a touch screen two fingertips move, turn and open it. Keys, with the drawing in focus:"),
     html("dl", { class: "keys" }, ...keys));
 }

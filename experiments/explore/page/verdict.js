@@ -74,7 +74,8 @@ export function verdictCard(page) {
 
   function namesOf(ids) {
     if (ids.length > 6) return `${ids.length} grasps`;
-    return listed(ids.map((id) => (id === 0 ? "the target" : `grasp ${id}`)));
+    const others = ids.filter((id) => id !== 0), name = others.length > 1 ? "grasps" : "grasp";
+    return `${ids.includes(0) ? "the target and " : ""}${name} ${listed(others)}`;
   }
 
   function withUnit(value) {

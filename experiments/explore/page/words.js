@@ -50,9 +50,9 @@ function withoutExponent(value) {
   return text.includes("e") ? `${text.replace("e", " × 10^").replace("^-", "^−")}` : text;
 }
 
-/** A ratio with four digits. */
+/** A ratio with four decimals. */
 export function ratio(value) {
-  return value.toPrecision(5).replace(/\.?0+$/, "");
+  return value.toFixed(4);
 }
 
 /** Degrees of an angle in radians. */

@@ -16,6 +16,7 @@ from icage.cells.sublevels import minima_in
 from icage.geometry.near_frame import NearFrame
 from icage.hand import Placement
 from models import CASES, HARD
+from tests.icage.cells.wandering import wander
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ def cage_of(name: str) -> Cage:
 
 
 def all_over(cage: Cage, rng: Generator, count: int = 2000) -> Floats:
-    """``count`` placements (n, 4): at the grasps and levels, and of every class that walks have met.
+    """``count`` placements (n, 4): at the grasps and levels, and of every class that walks met.
 
     A class is a verdict, in the cage or not; each has the same share, where it was met so often.
     """
@@ -57,7 +58,8 @@ def all_over(cage: Cage, rng: Generator, count: int = 2000) -> Floats:
     special = np.array([Placement.from_contacts(contacts).as_array() for contacts in hands])
     far = np.array([[10.0 * size, size, 1.0, 3.0 * size], [*special[0, :3], 0.0]])
     walks = ((special[:1], ("target",)), (special, IN_CAGE), (_minima(cage), HOLDS))
-    rows = np.vstack([walked(cage, starts, rng, kept) for starts, kept in walks])
+    parts = [walked(cage, starts, rng, kept) for starts, kept in walks]
+    rows = np.vstack([*parts, wander(cage, HOLDS, rng, count // 4, steps=60)])
     answers = query(cage, rows)
     kind = 2 * answers.verdict + answers.in_cage
     kinds = np.unique(kind)

@@ -62,6 +62,7 @@ def middle_of_hand(page: Any) -> tuple[float, float]:
     return box["x"] + edge + x, box["y"] + edge + y
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SIX)
 def test_it_answers_as_the_query(name: str, opened: Opened) -> None:
     cage = cage_of(name)
@@ -80,8 +81,9 @@ def test_it_answers_as_the_query(name: str, opened: Opened) -> None:
             assert (here[key] is None) == (there[key] is None), (row, here, there)
             assert here[key] is None or here[key] == pytest.approx(there[key], **close)
         assert (here["inside"] != []) == (here["verdict"] == "collision")
-    assert min(counts[word] for word in ("target", "other", "escapes", "collision")) >= 100, counts
-    assert counts.get("caged", 0) >= 100 or cage.sigma_first == cage.sigma_max, counts
+    assert min(counts[word] for word in ("other", "escapes", "collision")) >= 200, counts
+    assert counts["target"] >= 20, counts
+    assert counts.get("caged", 0) >= 50 or cage.sigma_first == cage.sigma_max, counts
 
 
 def test_a_far_object_is_answered_as_well(opened: Opened) -> None:
