@@ -29,7 +29,7 @@ export default {
     const page = mount(el, model.get("document"), { placed });
     model.on("change:placement", () => {
       const [x, y, theta, sigma] = model.get("placement");
-      if (told === null || [x, y, theta, sigma].join() !== told.join()) page.place({ x, y, theta, sigma });
+      if (told?.join() !== [x, y, theta, sigma].join()) page.place({ x, y, theta, sigma });
     });
   },
 };

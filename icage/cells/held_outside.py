@@ -7,16 +7,17 @@ from which it does not escape at once, so that a query can be answered by a tabl
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from icage.arrays import BoolArray, FloatArray, IntArray
-from icage.cells.free_space import CELL_LIMIT, inside_cells
-from icage.cells.kernels.escape import EXACT, escape_levels, new_memory
+from icage.cells.free_space import CELL_LIMIT, inside_cells, search
 from icage.cells.sublevels import minima_in
 from icage.cells.work import CageWork
 from icage.errors import GeometryError
 from icage.kernels.locate import nodes_of
+from icage.minima import escapes_of
 from icage.tolerance import LEVEL
 
 
@@ -43,8 +44,10 @@ class HeldOutside:
 def held_outside(work: CageWork, workers: int = 1) -> HeldOutside:
     """All cells outside the cage that hold the object.
 
-    Each of them is reached from a minimum of the hand below that minimum's escape; so a search from
-    every minimum outside the cage, in the order of the minima, meets them all.
+    Each of them is reached from a minimum of the hand below the level at which that one escapes. A
+    search up to there meets the other minima that escape by the same pass, too.
+
+    Complexity: that of ``icage.sublevels``, and a search over the cells found.
 
     Raises
     ------
@@ -55,22 +58,27 @@ def held_outside(work: CageWork, workers: int = 1) -> HeldOutside:
     found = work.search
     free_space = found.free_space
     minima = minima_in(free_space, workers)
-    outside = ~_in_cage(work, minima.cells)
-    # the highest first, as in a query: what they teach answers most of the others
-    order = np.flatnonzero(outside)[::-1]
-    levels, memory = escape_levels(
-        free_space.pieces, free_space.z, minima.cells[order],
-        minima.births[order] * (1.0 + LEVEL), free_space.cap, free_space.worst, CELL_LIMIT,
-        new_memory(),
-    )  # fmt: skip
-    if np.isnan(levels).any():
-        raise GeometryError(f"a search for the escape gave up after {CELL_LIMIT} cells")
-    known = (memory.keys >= 0) & ~np.isnan(memory.levels[:, EXACT])
-    keys = np.sort(memory.keys[known])
-    escapes = memory.levels[known, EXACT][np.argsort(memory.keys[known])]
-    cells = _cells_of_keys(keys, free_space.pieces.total)
+    levels = escapes_of(minima.merges, minima.into)
+    m = free_space.pieces.total
+    known: set[int] = set()
+    keys, escapes = [np.empty(0, dtype=np.int64)], [np.empty(0)]
+    inside = _in_cage(work, minima.cells)
+    # those that end the latest first: what they reach answers most of the others
+    for k in np.lexsort((minima.births, -minima.merges)).tolist():
+        if inside[k] or _key(minima.cells[k], m) in known:
+            continue
+        below = float(levels[k]) * (1.0 - 2.0 * LEVEL)
+        met = search(free_space, minima.cells[k], 0.0, stop_above=below)
+        if met.gave_up:
+            raise GeometryError(f"a search for what is held gave up after {CELL_LIMIT} cells")
+        new = np.array(sorted({*_key(met.cells.T, m).tolist()} - known), dtype=np.int64)
+        known.update(new.tolist())
+        keys.append(new)
+        escapes.append(np.full(len(new), levels[k]))
+    order = np.argsort(np.concatenate(keys))
+    cells = _cells_of_keys(np.concatenate(keys)[order], len(free_space.z), m)
     kept = ~_in_cage(work, cells)
-    return HeldOutside(cells[kept], escapes[kept])
+    return HeldOutside(cells[kept], np.concatenate(escapes)[order][kept])
 
 
 def _in_cage(work: CageWork, cells: IntArray) -> BoolArray:
@@ -80,6 +88,11 @@ def _in_cage(work: CageWork, cells: IntArray) -> BoolArray:
     return inside
 
 
-def _cells_of_keys(keys: IntArray, m: int) -> IntArray:
-    """Pieces (k, 3) of the keys (k,) under which searches remember cells."""
-    return np.column_stack([keys // (m * m), keys // m % m, keys % m])
+def _key(cell: IntArray, m: int) -> Any:
+    """One number for a cell of m pieces; for cells as columns (fingers, k) one each."""
+    return np.ravel_multi_index(tuple(cell), (m,) * len(cell))
+
+
+def _cells_of_keys(keys: IntArray, fingers: int, m: int) -> IntArray:
+    """Pieces (k, fingers) of the keys (k,)."""
+    return np.column_stack(np.unravel_index(keys, (m,) * fingers)).astype(np.int64)

@@ -72,7 +72,7 @@ export function levelScale(page, opened) {
     drawing.dataset.verdict = verdict;
     setAll(drawing, { "aria-valuenow": sigma, "aria-valuetext": `${length(sigma)}: ${verdict}` });
     frictionMark.replaceChildren();
-    if (friction?.sigma_first && friction.sigma_first > low && friction.sigma_first < high) {
+    if (friction?.mu > 0 && friction.sigma_first !== null && friction.sigma_first > low && friction.sigma_first < high) {
       const f = y(friction.sigma_first);
       frictionMark.append(
         svg("line", { x1: AXIS - 9, x2: AXIS + 9, y1: f, y2: f, class: "rubbing" }),
