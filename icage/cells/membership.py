@@ -34,7 +34,7 @@ TARGET, CAGED, OTHER, ESCAPES, COLLIDES = PlacementCode
 _GRID = 96
 """Squares along a side of the grid of point location."""
 
-_HELD = 1e-12
+HELD: Final = 1e-12
 """[diameter] A piece holds a finger this far outside it: the rounding of a position."""
 
 
@@ -199,7 +199,7 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     found = (
         np.full(fingers.shape[:2], -1)
         if work is None
-        else _locator(work).cells(fingers, _HELD * size)
+        else _locator(work).cells(fingers, HELD * size)
     )
     collides = _collides(cage, frame, fingers, found >= 0)
     verdict[collides] = COLLIDES
@@ -248,9 +248,17 @@ def _cells(work: CageWork, fingers: FloatArray, found: IntArray, size: float) ->
     cells = found.copy()
     lost = np.flatnonzero((cells < 0).any(axis=1))
     if len(lost):
-        near = 4.0 * max(COLLISION * size, work.sagitta)
+        near = held_when_lost(work.sagitta, size)
         cells[lost] = _locator(work).cells(fingers[lost], near)
     return cells
+
+
+def held_when_lost(sagitta: float, size: float) -> float:
+    """How far outside its piece a finger may lie that no piece holds but for rounding, [unit].
+
+    ``size`` is the object's diameter; ``sagitta`` is that of ``CageWork``.
+    """
+    return 4.0 * max(COLLISION * size, sagitta)
 
 
 def _inside_nodes(work: CageWork, cells: IntArray) -> IntArray:
