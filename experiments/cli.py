@@ -2,7 +2,8 @@
 
 0: the question was answered. 2: bad input, wrong options or a place that takes no answer, one line
 on standard error, nothing written. 1: a check that ran and failed, nobody reads standard output, or
-our fault. 130: interrupted.
+our fault. 130: interrupted. 143: asked to end by SIGTERM (129: by SIGHUP, a terminal that closed),
+which is an interrupt like any other: what is done is kept, nothing half written is left.
 """
 
 from __future__ import annotations
@@ -13,20 +14,26 @@ import errno
 import gc
 import os
 import pkgutil
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from io import TextIOWrapper
-from typing import Any, NoReturn, TextIO
+from typing import Any, Final, NoReturn, TextIO
 
 import experiments.commands
 import icage
+from experiments.io.ends import Asked, asked_to_end
 from experiments.io.one_line import one_line
 from icage.errors import InputError
+from icage.kernels.background import abandon
 from icage.kernels.compiling import when_compiling
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What a full, locked or broken disk answers."""
+
+_SIGNALS: Final = 128
+"""Exit codes from here on name the signal that ended the command."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -62,22 +69,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     _collect_seldom()
     heard = _open_streams()
+    with asked_to_end() as asked:
+        code = _run(arguments, asked)
+    if code >= _SIGNALS:
+        abandon()  # who compiled behind this command ends, too
+    return code if heard else code or 1
+
+
+def _run(arguments: Sequence[str] | None, asked: Asked) -> int:
+    """The exit code, whatever happens."""
     try:
         args = parser().parse_args(arguments)
         when_compiling(_say_compiling)
         code: int = args.run(args)
         sys.stdout.flush()
+        return asked.code or code
     except InputError as error:
         _say(str(error))
         return 2
     except KeyboardInterrupt:
-        return _interrupted()
+        return _interrupted(asked)
     except BrokenPipeError:
         _forget_output()
         return 1
     except Exception as error:
         if isinstance(error, SystemError) and _is_interrupt(error):
-            return _interrupted()
+            return _interrupted(asked)
         if isinstance(error, OSError) and error.errno in _NO_ROOM:
             _say(f"{error.filename or 'the answer'} cannot be written: {error.strerror}")
             _forget_output()
@@ -87,7 +104,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         reason = f"{type(error).__name__}: {error}"
         _say(f"internal: {reason} (our fault; ICAGE_DEBUG=1 shows where)")
         return 1
-    return code if heard else code or 1
 
 
 def _collect_seldom() -> None:
@@ -128,9 +144,9 @@ def _is_interrupt(error: BaseException | None) -> bool:
     return error is not None
 
 
-def _interrupted() -> int:
-    _say("interrupted")
-    return 130
+def _interrupted(asked: Asked) -> int:
+    _say("terminated" if asked.number else "interrupted")
+    return asked.code or 128 + signal.SIGINT
 
 
 def _say_compiling() -> None:

@@ -101,9 +101,11 @@ def staging(folder: Path) -> Generator[Staging]:
         yield Staging(place)
         (place / _MOVES).unlink(missing_ok=True)
     finally:
-        with suppress(OSError):  # the next one sweeps
-            _remove(place)
-        os.close(handle)
+        try:
+            with suppress(OSError):  # the next one sweeps
+                _remove(place)
+        finally:
+            os.close(handle)
 
 
 def sweep(folder: Path) -> None:

@@ -4,32 +4,15 @@ from __future__ import annotations
 
 import errno
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from icage.staging import PREFIX, Staging, staging, sweep
+from tests.killed import killed
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs POSIX locks")
-
-_KILLED = """
-import os, signal, sys
-from pathlib import Path
-from icage.staging import staging
-with staging(Path(sys.argv[1])) as place:
-    (place.new / "film.mp4").write_text("half")
-    {then}
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
-
-
-def killed(folder: Path, then: str = "") -> None:
-    """A process that writes and dies there."""
-    code = _KILLED.format(then=then)
-    assert subprocess.run([sys.executable, "-c", code, str(folder)], check=False).returncode == -9
 
 
 def test_what_a_killed_process_left_is_swept(tmp_path: Path):
