@@ -16,15 +16,16 @@ import os
 import pkgutil
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib import import_module
 from io import TextIOWrapper
-from typing import Any, Final, NoReturn, TextIO
+from typing import Any, Final, NoReturn, TextIO, cast
 
 import experiments.commands
 import icage
 from experiments.io.ends import Asked, asked_to_end
-from experiments.io.one_line import one_line
+from experiments.io.one_line import PrintableStream, one_line
 from icage.errors import InputError
 from icage.kernels.background import abandon
 from icage.kernels.compiling import when_compiling
@@ -69,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     _collect_seldom()
     heard = _open_streams()
-    with asked_to_end() as asked:
+    with asked_to_end() as asked, _guarded_streams():
         code = _run(arguments, asked)
     if code >= _SIGNALS:
         abandon()  # who compiled behind this command ends, too
@@ -126,6 +127,14 @@ def _open_streams() -> bool:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     return heard
+
+
+@contextmanager
+def _guarded_streams() -> Generator[None]:
+    """Whatever a name or a path holds, nothing reaches a terminal that it would obey."""
+    out, err = PrintableStream(sys.stdout), PrintableStream(sys.stderr)
+    with redirect_stdout(cast(TextIO, out)), redirect_stderr(cast(TextIO, err)):
+        yield
 
 
 def _nowhere() -> TextIO:

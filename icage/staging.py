@@ -1,10 +1,10 @@
 """Folders for output that is not finished yet. What a killed process left of them is swept.
 
 A staging folder is hidden, stands in the folder that its content is meant for, and holds a record
-with its own name, which its process keeps locked. So nobody has to guess by a name whose it is: what
-has the record and no lock is of a process that is gone, and everything else stays. Files that belong
-together move into their places together: a list of the moves is on the disk before the first of them,
-and whoever sweeps ends what was begun. [docs/decisions/0018-nothing-lost.md]
+with its own name, which its process keeps locked. So nobody has to guess by a name whose it is:
+what has the record and no lock is of a process that is gone, and everything else stays. Files that
+belong together move into their places together: a list of the moves is on the disk before the first
+of them, and whoever sweeps ends what was begun. [docs/decisions/0018-nothing-lost.md]
 """
 
 from __future__ import annotations
@@ -71,16 +71,16 @@ class Staging:
         try:
             for name in (*written, *others):
                 if os.path.lexists(folder / name):
-                    os.rename(folder / name, self.path / _OLD / name)
+                    (folder / name).rename(self.path / _OLD / name)
                     aside.append(name)
             for name in written:
-                os.rename(self.new / name, folder / name)
+                (self.new / name).rename(folder / name)
                 there.append(name)
         except BaseException:
             for name in reversed(there):
-                os.rename(folder / name, self.new / name)
+                (folder / name).rename(self.new / name)
             for name in reversed(aside):
-                os.rename(self.path / _OLD / name, folder / name)
+                (self.path / _OLD / name).rename(folder / name)
             (self.path / _MOVES).unlink()
             raise
 
@@ -190,7 +190,9 @@ def _is_ours(place: Path, handle: int) -> bool:
     words = os.read(handle, 4096).decode("utf-8", "replace")
     if words.startswith(_record(place)):
         return True
-    return not words and os.listdir(place) == [_RECORD]  # killed before it could say so
+    return not words and [path.name for path in place.iterdir()] == [
+        _RECORD
+    ]  # killed before it could say so
 
 
 def _end_moves(place: Path) -> None:
@@ -204,7 +206,7 @@ def _end_moves(place: Path) -> None:
             (place / _NEW / name).replace(place.parent / name)
     for name in moves["gone"]:
         if not os.path.lexists(place / _OLD / name) and os.path.lexists(place.parent / name):
-            os.rename(place.parent / name, place / _OLD / name)
+            (place.parent / name).rename(place / _OLD / name)
     (place / _MOVES).unlink()
 
 

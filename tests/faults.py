@@ -1,8 +1,8 @@
 """A disk that fails when it is told to: faults of the system calls that Python makes of files.
 
-Only under one folder, so that nothing else of the process notices. Files are opened through ``io.FileIO``
-of our own, so reads and writes fail as the system's would, below every buffer; what a library opens by
-itself, in another language, is not reached.
+Only under one folder, so that nothing else of the process notices. Files are opened through an
+``io.FileIO`` of our own, so reads and writes fail as the system's would, below every buffer; what a
+library opens by itself, in another language, is not reached.
 """
 
 from __future__ import annotations
@@ -70,11 +70,11 @@ class Disk:
     def _is_mine(self, path: Any) -> bool:
         try:
             if isinstance(path, int):
-                path = os.readlink(f"/proc/self/fd/{path}")
+                path = Path(f"/proc/self/fd/{path}").readlink()
             text = os.fsdecode(path)
         except (OSError, TypeError):
             return False
-        return os.path.abspath(text).startswith(str(self.folder)) and self.only in text
+        return str(Path(text).absolute()).startswith(str(self.folder)) and self.only in text
 
     def install(self, patch: pytest.MonkeyPatch) -> None:
         """Until ``patch`` is undone, the process has this disk."""

@@ -51,8 +51,8 @@ def run(args: argparse.Namespace) -> int:
 
     from experiments.cases.case_files import ONE, check_case_files, write_case_files
     from experiments.cases.chosen import chosen
-    from experiments.io.held_folder import held_folder
     from experiments.figures.paper.figures import write_figures
+    from experiments.io.held_folder import held_folder
     from icage.kernels.compiled import long_job
 
     long_job()

@@ -1,4 +1,4 @@
-"""A process that is asked to end does so as after Ctrl-C: nothing half written, nothing left behind."""
+"""A process that is asked to end does so as after Ctrl-C: nothing half written, nothing left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that icage wrote itself, read as anybody's: they may have been damaged, edited or replaced."""
+"""Files that icage wrote itself, read as anybody's: they may be damaged, edited or replaced."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """Processes that work for this one, and end with it however it ends.
 
-Each holds the reading end of a pipe whose other end this process alone has. Cut, by us or because we
-are gone, it ends them at once, whatever they do: they write no files. Where the system offers it (Linux)
-it kills them, too, should they be deep in machine code. None holds our standard output, so whoever
-reads that sees its end. Only the standard library is imported here: a worker knows whom to follow
-before it loads anything large.
+Each holds the reading end of a pipe whose other end this process alone has. Cut, by us or because
+we are gone, it ends them at once, whatever they do: they write no files. Where the system offers it
+(Linux) it kills them, too, should they be deep in machine code. None holds our standard output, so
+whoever reads that sees its end. Nothing large is imported here: a worker knows whom to follow
+before it loads what it works with.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
 The first process that meets kernels without machine code starts it and goes on: the answer does
 not wait. It is one at a time (a lock on a file, gone with its process), of low priority, has no
 terminal and nobody's standard output, ends by itself, and writes a list of the kernels whose
-machine code lies in numba's cache; nothing is wrong if it is killed. It works on behind a process that
-has ended well; one that was killed or interrupted takes it along. ``ICAGE_COMPILE_BEHIND=0`` starts
-none. [docs/decisions/0009-cold-start.md]
+machine code lies in numba's cache; nothing is wrong if it is killed. It works on behind a process
+that has ended well; one that was killed or interrupted takes it along. ``ICAGE_COMPILE_BEHIND=0``
+starts none. [docs/decisions/0009-cold-start.md]
 """
 
 from __future__ import annotations

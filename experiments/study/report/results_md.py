@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
+from experiments.io.one_line import markdown, printable
 from experiments.io.outcome_words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.method import method
@@ -27,9 +28,9 @@ def results_page(document: Mapping[str, Any], command: str) -> str:
 
 def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     found, config = document["found"], document["config"]
-    yield f"# Study: {document['name']}"
+    yield f"# Study: {markdown(document['name'])}"
     yield ""
-    yield f"**{sentence(found, document['name'])}.**"
+    yield f"**{sentence(found, markdown(document['name']))}.**"
     yield from _closed(found)
     yield ""
     yield from table(
@@ -48,11 +49,15 @@ def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     yield ""
     yield from method(document)
     yield ""
-    yield "Versions: " + ", ".join(f"{k} {v}" for k, v in document["versions"].items()) + "."
+    yield (
+        "Versions: "
+        + ", ".join(f"{k} {markdown(v)}" for k, v in document["versions"].items())
+        + "."
+    )
     yield ""
     yield "## Command"
     yield ""
-    yield f"    {command}"
+    yield f"    {printable(command)}"
 
 
 def _closed(found: Mapping[str, Any]) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -97,11 +98,13 @@ def _written(path: Path, table: pa.Table) -> None:
 
 def _twice(path: Path) -> None:
     table = pq.read_table(path)
-    _written(path, pa.concat_tables([table.slice(0, 16), table.slice(15, 1)]))
+    last = len(table) - 1
+    _written(path, pa.concat_tables([table.slice(0, last), table.slice(last - 1, 1)]))
 
 
 def _backwards(path: Path) -> None:
-    _written(path, pq.read_table(path).take(list(range(17))[::-1]))
+    table = pq.read_table(path)
+    _written(path, table.take(list(range(len(table)))[::-1]))
 
 
 def _retyped(path: Path) -> None:
@@ -174,7 +177,7 @@ def test_what_is_no_file_is_refused_and_nothing_is_touched(
         before = sorted(study.path.rglob("*"))
         result = study.resume()
         assert result.code == 2
-        assert "is no regular file" in result.err.splitlines()[-1]
+        assert re.search("is no regular file|is a folder there", result.err.splitlines()[-1])
         assert sorted(study.path.rglob("*")) == before
         path.rmdir() if kind == "folder" else path.unlink()
         path.write_bytes(content)
