@@ -33,6 +33,9 @@ from icage.kernels.compiling import when_compiling
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What a full, locked or broken disk answers."""
 
+_REFUSED = (*_NO_ROOM, errno.EACCES, errno.EPERM, errno.EMFILE, errno.ENFILE)
+"""What it answers about a file that it names, and a system that has no more files to give."""
+
 _SIGNALS: Final = 128
 """Exit codes from here on name the signal that ended the command."""
 
@@ -55,7 +58,8 @@ def parser() -> Parser:
         prog="icage",
         description="How far may a three-finger hand open before the object inside can escape?",
         epilog="A shipped object's name (pliers, saw, wrench), or that of one of its grasps "
-        "(pliers/1_best), may stand wherever a CASE does.",
+        "(pliers/1_best), may stand wherever a CASE does. Exit codes: 0 answered, 1 a check failed "
+        "or our fault, 2 bad input, 130 interrupted, 143 ended by SIGTERM: what is done is kept.",
     )
     top.add_argument("--version", action="version", version=f"icage {icage.__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -96,8 +100,11 @@ def _run(arguments: Sequence[str] | None, asked: Asked) -> int:
     except Exception as error:
         if isinstance(error, SystemError) and _is_interrupt(error):
             return _interrupted(asked)
+        if isinstance(error, OSError) and error.errno in _REFUSED and error.filename:
+            _say(f"{os.fsdecode(error.filename)!r} cannot be used: {error.strerror}")
+            return 2
         if isinstance(error, OSError) and error.errno in _NO_ROOM:
-            _say(f"{error.filename or 'the answer'} cannot be written: {error.strerror}")
+            _say(f"the answer cannot be written: {error.strerror}")
             _forget_output()
             return 2
         if os.environ.get("ICAGE_DEBUG"):

@@ -84,6 +84,9 @@ def _held(path: Path, who: str) -> int | None:
                 return handle
         except FileNotFoundError:
             pass
+        except OSError as error:
+            os.close(handle)
+            raise OutputError(f"{str(path)!r} cannot be used: {error.strerror}") from error
         os.close(handle)
     raise InputError(f"{str(path)!r} is made and removed by others all the time")
 

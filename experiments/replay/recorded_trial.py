@@ -26,6 +26,7 @@ from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from icage.staging import sweep
 from sim.closing.batch import close_many
 from sim.closing.judge import OUTCOMES, Verdicts, judge
 from sim.closing.outcome import ClosingOutcomes
@@ -131,6 +132,7 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
     RecordingError:
         No replay is there, it was recorded before outlines were kept, or it has no such row.
     """
+    sweep(folder)  # a replay that died while its files took their places
     document = _document(folder / JSON)
     table = _table(folder / TRIALS)
     if not 0 <= index < table.num_rows:
