@@ -51,13 +51,14 @@ def survived(command: Ended, folder: Path, kills: int, seed: int) -> dict[str, A
     temporary = folder / "tmp"
     temporary.mkdir(parents=True)
     alone, place = folder / "alone", folder / "place"
+    for folder_of in (alone, place):
+        folder_of.mkdir()
+        (folder_of / "thesis.txt").write_text("mine")
     begun = time.monotonic()
     code, words = _run(command, alone, temporary)
     took = time.monotonic() - begun
     assert code == 0, words
     whole = {name: (alone / name).read_bytes() for name in command.kept}
-    place.mkdir()
-    (place / "thesis.txt").write_text("mine")
     told: list[dict[str, Any]] = []
     faults: list[str] = []
     for number in range(kills):
@@ -103,7 +104,7 @@ def survived(command: Ended, folder: Path, kills: int, seed: int) -> dict[str, A
         faults.append(f"the last run: {code}: {words}")
     differ = [name for name in command.kept if (place / name).read_bytes() != whole[name]]
     faults += [f"{name} is not as an undisturbed run writes it" for name in differ]
-    others = _names(place) ^ (_names(alone) | {"thesis.txt"})
+    others = _names(place) ^ _names(alone)
     faults += [f"left or missing: {name}" for name in sorted(others)]
     faults += [f"left in the folder for temporary files: {p.name}" for p in temporary.iterdir()]
     shutil.rmtree(folder)
