@@ -88,12 +88,14 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(listing()))
         return 0
 
-    from experiments.study.run.session import run_session, session_of
+    from experiments.study.run.session import held, run_session, session_of
     from icage.kernels.compiled import long_job
 
-    session: Session = session_of(_given(args), args.out, args.resume, args.shard, args.any_code)
-    long_job()
-    lines = run_session(session, args.threads, args.scheduler, args.figures)
+    given = _given(args)
+    with held(args.out):
+        session: Session = session_of(given, args.out, args.resume, args.shard, args.any_code)
+        long_job()
+        lines = run_session(session, args.threads, args.scheduler, args.figures)
     print("\n".join(lines))
     return 0
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
+from experiments.io.one_line import markdown as as_markdown
 
 HEAD: Final = (
     "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",
@@ -63,6 +65,14 @@ def _aligned(lines: list[tuple[str, ...]]) -> Iterator[str]:
 
 def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Iterator[str]:
     """A page: title, table, legend, bottom line, the command that makes it again."""
+    rows = [
+        {
+            **row,
+            "case": as_markdown(row["case"]),
+            "failures": [as_markdown(sentence) for sentence in row["failures"]],
+        }
+        for row in rows
+    ]
     yield f"# {title}"
     yield ""
     yield from _piped(table(rows))
@@ -80,7 +90,7 @@ def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Ite
 
 
 def _piped(lines: list[tuple[str, ...]]) -> Iterator[str]:
-    cells = [[text.replace("|", "/") for text in line] for line in lines]
+    cells = [[re.sub(r"(?<!\\)\|", "/", text) for text in line] for line in lines]
     yield f"| {' | '.join(cells[0])} |"
     yield f"|{'---|' * len(cells[0])}"
     yield from (f"| {' | '.join(line)} |" for line in cells[1:])

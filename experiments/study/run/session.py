@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from experiments.cases.case_files import ONE, check_case_files, write_case_files
 from experiments.cases.chosen import Chosen, chosen
 from experiments.cases.reading import reading_of, say_notes
 from experiments.cases.with_discs import physical_case
 from experiments.io.arrow_table import Table
+from experiments.io.held_folder import held_folder
 from experiments.io.options import check_folder
 from experiments.io.pieces import cores
 from experiments.io.progress import stage_bar
@@ -32,6 +35,7 @@ from experiments.study.run.folder import (
     read_document,
     write_document,
 )
+from experiments.study.run.rows import schema_of
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, on_threads, run_study
 from icage.case import Case
@@ -39,6 +43,9 @@ from icage.formats.load import is_shipped, load
 from icage.formats.whole_files import whole_file
 
 MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
+
+REPLAY: Final = "replay.json"
+"""What a replay writes, beside a table of the same name as ours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +65,7 @@ class Session:
 def session_of(
     given: Mapping[str, Any], out: str | None, resume: bool, shard: int, any_code: bool = False
 ) -> Session:
-    """Check everything before anything runs.
+    """Check everything before anything runs; hold the folder meanwhile (``held``).
 
     Raises
     ------
@@ -78,9 +85,9 @@ def session_of(
             table["case"] = instead
     elif instead is not None:
         raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
-    check_folder("--out", path, (JSON, TRIALS, PAGE))
-    check_folder("--out", path / SHARDS)
     old = read_document(path)
+    if old is None:
+        _check_kind(out, path)
     if old is not None and not resume:
         raise ConfigError(
             f"--out {out!r} holds a study already; --resume goes on with it, or name another folder"
@@ -111,7 +118,8 @@ def session_of(
             hint = hint_of_code(old["versions"], document["versions"])
             raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}{hint}")
     document |= said_of_code(old, document, any_code)
-    folder = StudyFolder(path, fingerprint(document))
+    folder = StudyFolder(path, fingerprint(document), schema_of(study))
+    folder.check()
     kept = folder.beyond(study.design.total)
     if kept:
         raise ConfigError(
@@ -158,23 +166,47 @@ def _case(table: Mapping[str, Any], drawing: Namespace | None = None) -> Case:
     return case
 
 
+@contextmanager
+def held(out: str | None) -> Generator[None]:
+    """Make the folder of a study and hold it, so that what is checked there stays true.
+
+    Two studies at once would take each other's shards for leftovers.
+
+    Raises
+    ------
+    InputError:
+        There is no such place, it cannot be written to, or another process holds it.
+    """
+    if out is None:
+        raise ConfigError("--out DIR is needed")
+    path = Path(out)
+    check_folder("--out", path, (JSON, TRIALS, PAGE, MAP, RATES, INDICES))
+    check_folder("--out", path / SHARDS)
+    with held_folder(path, "study"):
+        yield
+
+
+def _check_kind(out: str, path: Path) -> None:
+    """A folder without a study's document holds nothing that a study would take the place of."""
+    for name in (TRIALS, REPLAY, PAGE, MAP, RATES, INDICES):
+        if os.path.lexists(path / name):
+            raise ConfigError(
+                f"--out {out!r} holds {name}, but no {JSON}: it is of something else and is not "
+                "replaced; name another folder"
+            )
+
+
 def run_session(
     session: Session, threads: int | None, scheduler: str | None, figures: bool
 ) -> list[str]:
-    """Run what is missing and write all results; the lines to print."""
+    """Run what is missing and write all results; the lines to print. Inside ``held``."""
     backend = _backend(session, threads, scheduler)
-    with session.folder.alone():
-        return _run(session, backend, figures)
-
-
-def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     study, folder = session.study, session.folder
     total = study.design.total
     print(announcement(study, session.document), flush=True)
     doubt = warning(session.document)
     if doubt is not None:
         print(f"icage: warning: {doubt}", file=sys.stderr, flush=True)
-    folder.sweep()
     if session.chosen is not None:
         write_case_files(session.chosen, folder.path, ONE)
     write_document({**session.document, "finished": False}, folder.path)

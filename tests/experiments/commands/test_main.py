@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import errno
+import os
 import pkgutil
 import signal
 import subprocess
@@ -186,7 +187,13 @@ def wait_until_idle(pid: int) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_an_interrupt_is_exit_130_without_a_traceback():
+@pytest.mark.parametrize(
+    ("sent", "code", "word"),
+    [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated"), ("SIGHUP", 129, "terminated")],
+)
+def test_an_end_that_is_asked_for_is_an_interrupt_without_a_traceback(
+    sent: str, code: int, word: str
+):
     command = subprocess.Popen(
         [*ICAGE, "query", CASE, "-"],
         stdin=subprocess.PIPE,
@@ -194,13 +201,31 @@ def test_an_interrupt_is_exit_130_without_a_traceback():
         stderr=subprocess.PIPE,
         text=True,
         # whoever starts tests in the background of a shell has interrupts ignored by inheritance
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=lambda: signal.signal(getattr(signal, sent), signal.SIG_DFL),
     )
     wait_until_idle(command.pid)  # it waits for its placements
-    command.send_signal(signal.SIGINT)
+    command.send_signal(getattr(signal, sent))
     out, err = command.communicate(timeout=60)
-    assert (command.returncode, out) == (130, "")
-    assert "Traceback" not in err
+    assert (command.returncode, out, err) == (code, "", f"icage: error: {word}\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_a_signal_that_somebody_handles_stays_theirs(monkeypatch: Any, capsys: Any):
+    heard: list[int] = []
+
+    def asks(_: Any) -> int:
+        os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
+    monkeypatch.setattr("experiments.commands.plan.run", asks)
+    before = signal.signal(signal.SIGTERM, lambda number, _: heard.append(number))
+    try:
+        assert here(capsys, "plan", CASE).code == 0
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert heard == [signal.SIGTERM]
+    assert here(capsys, "plan", CASE).code == 143
+    assert signal.getsignal(signal.SIGTERM) is before
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX pipes")

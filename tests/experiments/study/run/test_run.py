@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.io.intervals import stopped_at
+from experiments.io.parquet_files import words_of, write_table
 from experiments.study.run import shards as run
 from experiments.study.run.folder import StudyFolder
 from tests.experiments.commands.runner import here
@@ -396,7 +397,8 @@ def test_a_false_record_is_told(study: Studied, capsys: Any):
     table = pq.read_table(path)
     steps = table["steps"].to_pylist()
     at = table.column_names.index("steps")
-    pq.write_table(table.set_column(at, "steps", [[steps[0] + 1, *steps[1:]]]), path)
+    other = table.set_column(at, "steps", [[steps[0] + 1, *steps[1:]]])
+    write_table(other, path, words_of(table))
     result = here(capsys, "replay-trial", str(study.path), "0")
     assert result.code == 1
     assert "same versions, but steps differ" in result.err
