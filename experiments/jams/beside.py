@@ -70,12 +70,14 @@ class Attacked:
 class JamTested:
     """One jam: from which coefficient on it is foretold to hold, and from which it was seen to.
 
-    ``found_at`` are the coefficients at which it limited the level, ``measured`` is of hands put
+    ``found_at`` are the coefficients at which it limited the level, ``touching`` counts its
+    contacts (a finger in a concave corner has two), ``measured`` is of hands put
     down there, ``released`` of those that let go; see ``sim.grip.stick``.
     """
 
     jam: Jam
     found_at: tuple[float, ...]
+    touching: int
     foretold: float
     measured: Threshold
     released: float
@@ -144,13 +146,15 @@ def judge_jam(
     """
     scene = physical.simulated.scene()
     place = jam.placement.as_array()
-    foretold = least_mu(held_at(scene, place))
+    held = held_at(scene, place)
+    foretold = least_mu(held)
     if foretold > found_at[0] * (1.0 + DECIDED) or foretold < LEAST:
         return None
     starts = beside(scene, place, attacks, rng)
     return JamTested(
         jam,
         found_at,
+        len(held.finger),
         foretold,
         threshold(scene, place, foretold, config),
         released_at(scene, place, foretold, config),

@@ -32,6 +32,9 @@ LONGEST: Final = 4.0
 OFF_BALANCE: Final = 1e-3
 """[drive_force] An end with a larger residual is not held by friction."""
 
+DEEPEST_AT_REST: Final = 1e-5
+"""[diameter] A finger deeper than this at the end is not where it is said to be."""
+
 TRIES: Final = 40
 """Times more hands are drawn for the upper side than are wanted of it."""
 
@@ -63,6 +66,8 @@ class Ends:
         the ends at rest outside the target; nan for the others.
     repeated:
         How many closed again, for ten times as long or at ``GENTLER``; that is what counts of them.
+    sunk:
+        (N,) fingers that wedge themselves into a corner sink in: deeper than ``DEEPEST_AT_REST``.
     penetration:
         [diameter] of the deepest finger.
     """
@@ -80,6 +85,7 @@ class Ends:
     residual: FloatArray
     to_jam: FloatArray
     repeated: int
+    sunk: BoolArray
     penetration: float
 
     def __len__(self) -> int:
@@ -133,7 +139,8 @@ def close_from(
     for patient in (longer, gentler(usual)):
         open_now = _pushed_open(closed, top)
         late = closed.ending == TIMED_OUT
-        again = np.flatnonzero(late & ~open_now if patient is longer else late | open_now)
+        deep = closed.penetration_rest > DEEPEST_AT_REST
+        again = np.flatnonzero(late & ~open_now if patient is longer else late | open_now | deep)
         if len(again):
             repeated[again] = True
             later = close_many(rubbing(scene, mu, patient), starts[again], threads)
@@ -164,6 +171,7 @@ def close_from(
         residual=off,
         to_jam=away,
         repeated=int(repeated.sum()),
+        sunk=closed.penetration_rest > DEEPEST_AT_REST,
         penetration=float(closed.penetration_max.max(initial=0.0)),
     )
 

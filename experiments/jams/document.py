@@ -72,6 +72,7 @@ def ends_document(ends: Ends) -> dict[str, Any]:
         "target_rate": wilson(int(there.sum()), len(ends)),
         "settled": int(ends.settled.sum()),
         "repeated": ends.repeated,
+        "sunk": int(ends.sunk.sum()),
         "stray": int(ends.stray.sum()),
         "residual": float(beyond.max(initial=0.0)),
         "to_nearest_jam": _largest(ends.to_jam),
@@ -93,6 +94,7 @@ def _jam(row: Judged, tested: JamTested) -> dict[str, Any]:
         "sigma": tested.jam.sigma / row.physical.cage.sigma_0,
         "contacts": tested.jam.contacts,
         "limits_at": tested.found_at,
+        "touching": tested.touching,
         "foretold": tested.foretold,
         "slips_at": found.slips,
         "sticks_at": found.sticks if math.isfinite(found.sticks) else None,
@@ -172,7 +174,8 @@ def page(document: dict[str, Any], command: str) -> Iterator[str]:
         "how far the middle one of those ended from it."
     )
     yield ""
-    yield "| case | sigma | fingers | foretold | put down | let go | off | at 0.9 | 1.1 | moved |"
+    head = "case", "sigma", "fingers (contacts)", "foretold", "put down", "let go", "off"
+    yield f"| {' | '.join((*head, 'at 0.9', 'at 1.1', 'moved'))} |"
     yield f"|{'---|' * 10}"
     for case in cases:
         yield from (_jam_row(case["case"], jam) for jam in case["jams"])
@@ -223,9 +226,13 @@ def _sums(document: dict[str, Any]) -> Iterator[str]:
     )
     weak, strong = ([jam[kind] for jam in jams] for kind in ("weaker", "stronger"))
     near, nearer = (sum(1 for jam in jams if _within(jam, share)) for share in (0.05, 0.01))
+    two = [jam for jam in jams if jam["touching"] == 2]
+    early = sum(1 for jam in jams if jam["sticks_at"] and jam["sticks_at"] < 0.95 * jam["foretold"])
     yield (
         f"**{near} of {len(jams)}** limiting jams begin to hold within 5 % of the friction "
-        f"foretold, {nearer} within 1 %. Beside them {_stuck(weak)} hands stuck at 0.9 of it and "
+        f"foretold, {nearer} within 1 %; {early} hold at less. Of those on two contacts "
+        f"{sum(1 for jam in two if _within(jam, 0.05))} of {len(two)} do. Beside them "
+        f"{_stuck(weak)} hands stuck at 0.9 of it and "
         f"{_stuck(strong)} at 1.1."
     )
 
@@ -262,7 +269,7 @@ def _jam_row(name: str, jam: dict[str, Any]) -> str:
     off = "-" if jam["off"] is None else f"{100.0 * jam['off']:+.1f} %"
     weak, strong = jam["weaker"], jam["stronger"]
     cells = (
-        name, f"{jam['sigma']:.5f}", ", ".join(map(str, jam["fingers"])),
+        name, f"{jam['sigma']:.5f}", f"{', '.join(map(str, jam['fingers']))} ({jam['touching']})",
         f"{jam['foretold']:.5f}", f"{low:.5f} to {end}",
         "-" if released is None else f"{released:.5f}", off,
         f"{weak['stuck']}/{weak['trials']}", f"{strong['stuck']}/{strong['trials']}",

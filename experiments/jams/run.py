@@ -75,8 +75,9 @@ def judge(
 def _farther(done: Judged, one: Ends) -> Iterator[str]:
     """Ends in the target that are farther from it than they may stop."""
     most = next(level.ends for level in done.levels if level.mu == one.mu)
-    position = float(one.position[one.in_target].max(initial=0.0))
-    angle = float(one.angle[one.in_target].max(initial=0.0))
+    where = one.in_target & one.settled & ~one.sunk
+    position = float(one.position[where].max(initial=0.0))
+    angle = float(one.angle[where].max(initial=0.0))
     if position > most.position_max + SOFT[0] or angle > most.angle_max + SOFT[1]:
         yield (
             f"{done.name}: closings from below sigma_first({one.mu:g}) ended up to {position:.3g} "
@@ -133,10 +134,10 @@ def _failures(done: Judged) -> Iterator[str]:
                 f"sigma_first({one.mu:g}) ended where nothing holds (seed {done.seed})"
             )
     for jam in done.jams:
-        if jam.off < -NEAR:
+        if jam.measured.sticks < (1.0 - NEAR) * jam.foretold:
             yield (
                 f"{done.name}: the jam of {jam.found_at[0]:g} is foretold to hold from "
-                f"{jam.foretold:.5g} on and holds at {jam.foretold * (1.0 + jam.off):.5g}"
+                f"{jam.foretold:.5g} on and holds at {jam.measured.sticks:.5g}"
             )
         for run in (jam.weaker, jam.stronger):
             if run.stray:
