@@ -38,18 +38,22 @@ from icage.kernels.compiled import compiled
 _ROOM = 96
 """Corners of a polygon: four, one for each half space, and some for rounding."""
 
-_SHORT = 1e-8
+_SHORT = 2e-10
 """[rad] Half the turn of a part of an arc that is halved no more."""
 
 _NARROW = 1e-5
 """[rad] Half a range of directions from a vertex that is halved no more."""
 
-_TRIES = 4000
+_TRIES = 10_000
 """Bounds that are computed for one choice; what has not been decided then counts as a jam."""
 
-_GAP = 1e-10
-"""[1] Parts that could lower a level by less (relative) are not looked at; it is lowered by that.
-Where forces balance along the curve sigma hardly changes, and all parts there would be."""
+_GAP = 4e-10
+"""[1] Parts that could lower a level by less (relative) are not halved; it is lowered by what they
+could. Where forces balance along the curve sigma hardly changes, and all parts there would be: it
+has to be more than the bounds of the shortest parts are off, ..."""
+
+_DOUBLED = 500
+"""... and it doubles after so many bounds for one choice: those parts grow many as they shrink."""
 
 _STACK = 256
 """Parts that wait."""
@@ -201,9 +205,12 @@ def least_disc_jam(
     hand = np.zeros(4)
     touches = np.zeros(fingers, np.bool_)
     best = below
+    lowest = np.inf
     for position in range(len(order)):
         choice = order[position]
         if bounds[choice] >= best * (1.0 - _GAP):
+            if best < below:
+                lowest = min(lowest, bounds[choice])
             break
         cell, chosen = cells[choices.cell[choice]], choices.chosen[choice]
         floor = bounds[choice]
@@ -219,7 +226,13 @@ def least_disc_jam(
         tries = 0
         while top:
             top -= 1
-            if waiting[top] >= best * (1.0 - _GAP):
+            gap = _GAP * 2.0 ** (tries / _DOUBLED)
+            if waiting[top] >= best * (1.0 - gap):
+                if waiting[top] < lowest:
+                    lowest = waiting[top]
+                    if best == below:
+                        hand[:] = points[top]
+                        touches[:] = subset
                 continue
             state[:] = states[top]
             if (
@@ -239,7 +252,7 @@ def least_disc_jam(
                 tries += 1
                 bound[k] = _bound(
                     pieces, z, cell, finger, chosen, count, contacts, child[k], phi, near,
-                    goal, best * (1.0 - _GAP), thick, room, point[k],
+                    goal, best, thick, room, point[k],
                 )  # fmt: skip
                 bound[k] = max(bound[k], own)
             # the lower one is looked at first
@@ -250,7 +263,10 @@ def least_disc_jam(
                     points[top] = point[k]
                     waiting[top] = bound[k]
                     top += 1
-    return LeastJam(best * (1.0 - _GAP) if best < below else np.inf, hand, touches)
+    least_found = min(best, lowest)
+    return LeastJam(
+        least_found if least_found < below * (1.0 - _GAP) else np.inf, hand, touches
+    )  # fmt: skip
 
 
 @compiled
