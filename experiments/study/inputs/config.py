@@ -170,6 +170,10 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
     return config
 
 
+_LATER: Final = ("place",)
+"""Fields that the first documents do not have; None by default."""
+
+
 def config_of(document: Mapping[str, Any], case: Case) -> StudyConfig:
     """The config that ``StudyConfig.document`` has written, checked like one that a user gives.
 
@@ -179,6 +183,8 @@ def config_of(document: Mapping[str, Any], case: Case) -> StudyConfig:
         A field is missing, unknown, or its value is not allowed.
     """
     names = {one.name for one in fields(StudyConfig)}
+    # documents from before there was such a field mean its default
+    document = {**dict.fromkeys(_LATER), **document}
     for name in sorted({*document, *names}):
         if name not in document or name not in names:
             raise ConfigError(
