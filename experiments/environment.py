@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -61,11 +62,17 @@ def run_in(python: Path, *arguments: str) -> int:
     """Run Python with these arguments and return its exit code, as if it were this process.
 
     On an interrupt, which a terminal sends to both, the child is left to tidy up (a second one
-    ends it): subprocess.run would kill it a quarter of a second later.
+    ends it): subprocess.run would kill it a quarter of a second later. Other signals that ask this
+    process to end are handed on.
     """
     child = subprocess.Popen([str(python), *arguments])
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, lambda asked, _: child.send_signal(asked))
     try:
-        return child.wait()
+        code = child.wait()
+        return code if code >= 0 else 128 - code
     except KeyboardInterrupt:
         with suppress(KeyboardInterrupt):
             child.wait()

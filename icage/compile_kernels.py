@@ -38,6 +38,7 @@ def main(options: list[str]) -> int:
     lock = background.take_lock()
     if options:
         signal.alarm(background.SECONDS)
+        background.follow()
         if lock is None:
             return 0
     if "--behind" in options:  # nobody waits for it

@@ -13,6 +13,7 @@ from icage.arrays import FloatArray, real_numbers
 from icage.errors import GraspError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
+from icage.library_faults import geometry_told
 from icage.outline import Outline
 from icage.tolerance import CONTACT_OFF
 
@@ -58,6 +59,7 @@ def check_radius(finger_radius: object) -> float:
     return radius
 
 
+@geometry_told()
 def check_contacts(
     outline: Outline, contacts: FloatArray, finger_radius: float, unit: str = ""
 ) -> None:
@@ -90,18 +92,35 @@ def check_contacts(
             f"({LARGEST_RADIUS:g} diameters of the outline)"
         )
     HandShape.from_contacts(contacts)
+    _check_size(outline, contacts, unit)
     _check_sides(contacts, finger_radius, unit)
     _check_distances(outline, contacts, finger_radius, unit)
     if finger_radius > 0.0:
         _check_pockets(outline, contacts, finger_radius, unit)
 
 
+_SIDES = ((0, 1), (1, 2), (0, 2))
+
+SMALLEST_HAND = 2e-7
+"""[diameter] Least longest side of a hand, twice SLIDE_GIVE over PLATEAU: a smaller one, turned as
+far as SLIDE_GIVE lets it, slides by more than PLATEAU, and methods differ in whether it holds."""
+
 _TOUCHING = 1e-12
 """[1] Discs that overlap by this share of their diameter touch: the rounding of two centres."""
 
 
+def _check_size(outline: Outline, contacts: FloatArray, unit: str) -> None:
+    longest = max(float(np.hypot(*(contacts[j] - contacts[i]))) for i, j in _SIDES)
+    least = SMALLEST_HAND * outline.diameter
+    if longest < least:
+        raise GraspError(
+            f"the fingers are at most {longest:.3g}{unit} apart; at least {least:.3g}{unit} "
+            f"({SMALLEST_HAND:g} of the object's diameter) is needed"
+        )
+
+
 def _check_sides(contacts: FloatArray, r: float, unit: str) -> None:
-    for i, j in ((0, 1), (1, 2), (0, 2)):
+    for i, j in _SIDES:
         side = float(np.hypot(*(contacts[j] - contacts[i])))
         if side < 2.0 * r * (1.0 - _TOUCHING):
             raise GraspError(

@@ -35,6 +35,10 @@ class FormatError(InputError):
     """A drawing cannot be read."""
 
 
+class LibraryError(InputError):
+    """A library that computes geometry gave up on what a user gave: too fine, or too near a tie."""
+
+
 class MethodError(InputError):
     """The method that planned a cage cannot answer; the error names the one that can."""
 

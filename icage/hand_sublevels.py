@@ -11,10 +11,12 @@ from icage.cells.sublevels import sublevels_of
 from icage.checks import a_count, an_instance
 from icage.errors import HandError, InputError
 from icage.hand import HandShape
+from icage.library_faults import geometry_told
 from icage.minima import Sublevels
 from icage.outline import Outline
 
 
+@geometry_told()
 def sublevels(
     case: Case | Outline | ArrayLike, hand: HandShape | None = None, *, workers: int | None = None
 ) -> Sublevels:

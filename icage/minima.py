@@ -62,16 +62,21 @@ class Sublevels(Value):
 
     @property
     def escapes(self) -> FloatArray:
-        """(m,) sigma_max of each minimum: the level at which it meets a pinched hand; inf: never.
-
-        Merges only rise from a minimum to the one that it merges into: it is the last of them.
-        """
-        last = np.arange(len(self))
-        while (self.into[last] >= 0).any():
-            last = np.where(self.into[last] >= 0, self.into[last], last)
-        return read_only(self.merges[last])
+        """(m,) sigma_max of each minimum: the level at which it meets a pinched hand, or inf."""
+        return read_only(escapes_of(self.merges, self.into))
 
     @property
     def never_escape(self) -> BoolArray:
         """(m,) which minima no opening of the hand connects with a pinched hand."""
         return np.isinf(self.escapes)
+
+
+def escapes_of(merges: FloatArray, into: IntArray) -> FloatArray:
+    """(m,) level at which minima meet a pinched hand, of what ``Sublevels`` calls so; inf: never.
+
+    Merges only rise from a minimum to the one that it merges into: it is the last of them.
+    """
+    last = np.arange(len(merges))
+    while (into[last] >= 0).any():
+        last = np.where(into[last] >= 0, into[last], last)
+    return merges[last]

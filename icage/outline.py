@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only, real_numbers
 from icage.errors import GeometryError, OutlineError
+from icage.library_faults import geometry_told
+from icage.near_touch import NEAREST, near_touch
 from icage.values import Value
 
 MAX_VERTICES = 2000
@@ -48,7 +50,8 @@ class Outline(Value):
     Raises
     ------
     OutlineError:
-        Not finite, fewer than three different vertices, self-crossing (says where), no area,
+        Not finite, fewer than three different vertices, self-crossing or nearly touching itself
+        (says where), no area,
         more than ``MAX_VERTICES`` vertices, coordinates beyond ``LARGEST_COORDINATE`` or a
         diameter below ``SMALLEST_DIAMETER``.
 
@@ -70,6 +73,7 @@ class Outline(Value):
         if len(points) > MAX_VERTICES:
             raise OutlineError(f"the outline has {len(points)} vertices; at most {MAX_VERTICES}")
         self._settle(points)
+        self._check_apart()
 
     @classmethod
     def computed(cls, vertices: ArrayLike) -> Outline:
@@ -87,6 +91,7 @@ class Outline(Value):
             raise GeometryError(f"a computed polygon: {error}") from error
         return outline
 
+    @geometry_told()
     def _settle(self, points: FloatArray) -> None:
         repeated = (points == np.roll(points, 1, axis=0)).all(axis=1)
         points = points[~repeated] if not repeated.all() else points[:1]
@@ -114,6 +119,18 @@ class Outline(Value):
         object.__setattr__(self, "vertices", read_only(points))
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "polygon", polygon)
+
+    @geometry_told()
+    def _check_apart(self) -> None:
+        """Refuse a slit or a neck that is thinner than the planner can tell from none."""
+        found = near_touch(self.vertices, self.diameter)
+        if found is not None:
+            vertex, edge = (self.vertices[k].tolist() for k in (found.vertex, found.edge))
+            raise OutlineError(
+                f"the outline nearly touches itself: its vertex {vertex} is {found.gap:.3g} from "
+                f"its edge that begins at {edge}; at least {NEAREST * self.diameter:.3g} "
+                f"({NEAREST:g} of its diameter) is needed"
+            )
 
     def __len__(self) -> int:
         return len(self.vertices)

@@ -18,6 +18,7 @@ from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
 from icage.grasp import Grasp
 from icage.hand import HandShape, Placement
+from icage.library_faults import geometry_told
 from icage.method import Method
 from icage.outline import Outline
 
@@ -27,6 +28,7 @@ METHODS: Final[tuple[MethodName, ...]] = ("cells", "contact-space")
 """The methods by the names that the command line gives them."""
 
 
+@geometry_told()
 def plan(
     case: Case | Outline | ArrayLike,
     grasp: Grasp | ArrayLike | None = None,

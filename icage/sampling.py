@@ -28,6 +28,7 @@ from icage.cells.membership import TARGET, query
 from icage.cells.regions import outer_bounds
 from icage.errors import GeometryError, IcageError
 from icage.kernels.locate import depth_inside
+from icage.library_faults import geometry_told
 
 StartSet = Literal["guaranteed", "rest", "cage"]
 
@@ -100,6 +101,7 @@ def same_set(cage: Cage, which: StartSet) -> StartSet:
     return "guaranteed" if which == "cage" and not has_rest(cage) else which
 
 
+@geometry_told()
 def draw_starts(
     cage: Cage,
     which: StartSet,
@@ -160,11 +162,15 @@ class Box:
     top: float
 
     @classmethod
-    def around(cls, cage: Cage, which: StartSet) -> Box:
-        """A box that holds the set: a placement of it has each finger in the finger's region."""
+    def around(cls, cage: Cage, which: StartSet, below: float = np.inf) -> Box:
+        """A box that holds the set: a placement of it has each finger in the finger's region.
+
+        ``below`` [unit] leaves of the guaranteed set what is smaller than that: below a level with
+        friction, for one.
+        """
         which = same_set(cage, which)
         if which == "guaranteed":
-            top = safe_level(cage.sigma_first, cage.sigma_0)
+            top = min(safe_level(cage.sigma_first, cage.sigma_0), below)
             level, floor = (None if np.isinf(top) else top), cage.sigma_0
         else:
             top = safe_level(cage.sigma_max, cage.sigma_0)

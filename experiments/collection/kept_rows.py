@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -18,12 +19,17 @@ from experiments.collection.rows import Row, table_of
 from experiments.io.arrow_table import Table
 from experiments.io.changes import changes
 from experiments.io.held_folder import held_folder, writable
+from experiments.io.own_files import DamagedError, set_aside
 from experiments.io.parquet_files import read_table, words_of, write_table
+from experiments.io.versions import CODE, hint_of_code, said_of_code
 from icage.errors import InputError
-from icage.formats.whole_files import leftovers
+from icage.staging import sweep
 
 _KEY: Final = b"icage-grasp-table"
 """Under which the document is kept with the rows."""
+
+_PART: Final = re.compile(r"[0-9a-f]{32}\.parquet")
+"""Rows of an object, named by its file's digest."""
 
 Known: TypeAlias = dict[tuple[str, str], list[Row]]
 """(file, digest) to the rows of an object."""
@@ -35,6 +41,8 @@ class KeptRows:
 
     table: Path
     document: dict[str, Any]
+    any_code: bool = False
+    """Rows of other code of the same version are taken, and said in the document."""
 
     @property
     def parts(self) -> Path:
@@ -52,9 +60,7 @@ class KeptRows:
         """
         with held_folder(self.parts, "grasps"):
             try:
-                with writable(self.parts):
-                    for part in (*leftovers(self.table), *self.parts.glob(".*.parquet")):
-                        part.unlink(missing_ok=True)
+                sweep(self.table.parent)
                 yield
             finally:
                 with suppress(OSError):  # it holds rows
@@ -70,37 +76,53 @@ class KeptRows:
         """
         found: Known = {}
         if self.table.exists():
-            table = read_table(self.table)
-            if table is None or _KEY not in words_of(table):
-                raise InputError(
-                    f"--out {str(self.table)!r} is no table of grasps and is not replaced; name "
-                    "another file, or remove it"
-                )
+            try:
+                table = read_table(self.table)
+            except DamagedError as error:
+                raise self._refused(str(error)) from error
+            if _KEY not in words_of(table):
+                raise self._refused("it is another table")
             self._add(table, found, str(self.table))
         with writable(self.parts):
             for path in sorted(self.parts.glob("*.parquet")):
-                part = read_table(path)
-                if part is None or _KEY not in words_of(part):
-                    path.unlink()
+                if not _PART.fullmatch(path.name):
+                    continue
+                try:
+                    part = read_table(path)
+                    if _KEY not in words_of(part):
+                        raise DamagedError("it is no table of grasps")
+                except DamagedError as error:
+                    set_aside(
+                        path, self.table.with_name(f"{self.table.name}.set-aside"), str(error)
+                    )
                 else:
                     self._add(part, found, f"{self.table} (unfinished, in {self.parts.name})")
         return found
 
+    def _refused(self, why: str) -> InputError:
+        return InputError(
+            f"--out {str(self.table)!r} is no table of grasps and is not replaced; name another "
+            f"file, or remove it ({why})"
+        )
+
     def _add(self, table: Table, found: Known, place: str) -> None:
+        free = (CODE,) if self.any_code else ()
         try:
             old: dict[str, Any] = json.loads(words_of(table)[_KEY])
             lines = [
                 *changes({"format": old["format"]}, {"format": self.document["format"]}),
                 *changes(old["options"], self.document["options"]),
-                *changes(old["versions"], self.document["versions"], shown=str),
+                *changes(old["versions"], self.document["versions"], free, str),
             ]
+            hint = hint_of_code(old["versions"], self.document["versions"])
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(f"--out {place!r}: its own words cannot be read: {error!r}") from error
         if lines:
             raise InputError(
                 f"--out {place!r} holds another search: {'; '.join(lines)}; name another file, or "
-                "remove it"
+                f"remove it{hint}"
             )
+        self.document.update(said_of_code(old, self.document, self.any_code))
         mine: Known = {}
         for row in table.to_pylist():
             mine.setdefault((row["file"], row["digest"]), []).append(row)
@@ -122,7 +144,8 @@ class KeptRows:
         self._write(rows, self.table)
         with writable(self.parts):
             for path in self.parts.glob("*.parquet"):
-                path.unlink()
+                if _PART.fullmatch(path.name):
+                    path.unlink()
 
     def _write(self, rows: Iterable[Row], path: Path) -> None:
         words = {_KEY: json.dumps(self.document, sort_keys=True).encode()}

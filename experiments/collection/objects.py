@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, NoReturn
@@ -17,6 +17,7 @@ from icage.case import Case
 from icage.errors import InputError
 from icage.formats.drawings.read import FORMATS, PICTURES, fitting, is_drawing
 from icage.formats.load import load_object
+from icage.outline import Outline
 
 _SUFFIXES: Final = ", ".join(f"*{suffix}" for suffix in FORMATS)
 
@@ -44,6 +45,25 @@ class Readable:
     digest: str
     seed: int
     case: Case
+
+    def document(self) -> dict[str, Any]:
+        """JSON-ready, for a worker that does not have the file."""
+        case = self.case
+        target = None if case.target is None else case.contacts.tolist()
+        return {
+            "file": self.file, "digest": self.digest, "seed": self.seed, "name": case.name,
+            "unit": case.unit, "vertices": case.outline.vertices.tolist(),
+            "finger_radius": case.finger_radius, "target": target,
+        }  # fmt: skip
+
+
+def readable_of(document: Mapping[str, Any]) -> Readable:
+    """The object of a document, to the last bit."""
+    case = Case(
+        document["name"], document["unit"], Outline(document["vertices"]),
+        document["finger_radius"], document["target"],
+    )  # fmt: skip
+    return Readable(document["file"], document["digest"], document["seed"], case)
 
 
 @dataclass(frozen=True, slots=True)

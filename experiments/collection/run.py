@@ -19,6 +19,7 @@ from experiments.collection.rows import Row, unreadable_row
 from experiments.io.options import check_output
 from experiments.io.pieces import cores
 from experiments.io.progress import stage_bar
+from experiments.io.versions import said_of_code
 from icage.errors import InputError
 
 _NAMED: Final = 10
@@ -48,6 +49,7 @@ def search_objects(
     options: SearchOptions,
     workers: int | None,
     scheduler: str | None,
+    any_code: bool = False,
 ) -> list[str]:
     """Search every object of these files and folders that has no rows yet, and write all; the lines
     to print.
@@ -66,8 +68,9 @@ def search_objects(
     if scheduler is None:
         backend = on_this_machine(options, document, workers or cores())
     else:
-        backend = on_cluster(scheduler, document)
-    kept = KeptRows(place, document)
+        backend = on_cluster(scheduler, document, any_code)
+    document |= said_of_code(None, document, any_code)
+    kept = KeptRows(place, document, any_code)
     with kept.alone():
         run = _Run(files, options, kept.known())
         with stage_bar() as bar, closing(backend(run.missing())) as answers:

@@ -52,14 +52,16 @@ def run(args: argparse.Namespace) -> int:
     from experiments.cases.case_files import ONE, check_case_files, write_case_files
     from experiments.cases.chosen import chosen
     from experiments.figures.paper.figures import write_figures
+    from experiments.io.held_folder import held_folder
     from icage.kernels.compiled import long_job
 
     long_job()
-    if case.target is None:
-        check_case_files("--out", out, [ONE], case.sources)
-    found = chosen(case, args)
-    for path, words in write_figures(found.cases[0], names, out, args.format):
-        print(f"{path}: {words}", flush=True)
-    for name in write_case_files(found, out, ONE):
-        print(f"{out / name}: the case that was drawn", flush=True)
+    with held_folder(out, "figures"):
+        if case.target is None:
+            check_case_files("--out", out, [ONE], case.sources)
+        found = chosen(case, args)
+        for path, words in write_figures(found.cases[0], names, out, args.format):
+            print(f"{path}: {words}", flush=True)
+        for name in write_case_files(found, out, ONE):
+            print(f"{out / name}: the case that was drawn", flush=True)
     return 0

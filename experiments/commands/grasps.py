@@ -8,7 +8,15 @@ import argparse
 from typing import Any
 
 from experiments.cases.reading import add_reading
-from experiments.io.options import add_json, count, file_name, not_negative, number, positive
+from experiments.io.options import (
+    add_any_code,
+    add_json,
+    count,
+    file_name,
+    not_negative,
+    number,
+    positive,
+)
 from experiments.io.options import seed as seed_option
 
 PHI_SKETCH = """\
@@ -192,6 +200,7 @@ def add_parser(subparsers: Any) -> None:
         "--scheduler", metavar="ADDRESS", type=file_name,
         help="search for the table on the dask.distributed cluster at tcp://HOST:PORT",
     )  # fmt: skip
+    add_any_code(many)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -287,5 +296,7 @@ def _of_many(args: argparse.Namespace) -> None:
         reading_of(args, tolerance=args.tolerance != 0.0),
         args.seconds,
     )  # fmt: skip
-    lines = search_objects(args.object, args.out, options, args.workers, args.scheduler)
+    lines = search_objects(
+        args.object, args.out, options, args.workers, args.scheduler, args.any_code
+    )
     print("\n".join(lines))

@@ -54,11 +54,26 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run, write, print; 1 if anything did not hold."""
+    from contextlib import ExitStack
+
+    from experiments.io.held_folder import held_folder
+
     for option in ("json", "markdown", "junit"):
         check_output(f"--{option}", getattr(args, option))
     if args.out is not None:
         check_folder("--out", Path(args.out), ("replay.json", "trials.parquet"))
+    with ExitStack() as holds:
+        if args.out is not None:
+            from experiments.replay.files import ALL
+            from experiments.replay.recorded_trial import check_kind
 
+            holds.enter_context(held_folder(Path(args.out), "regress"))
+            check_kind("--out", Path(args.out), ALL)
+        return _run(args)
+
+
+def _run(args: argparse.Namespace) -> int:
+    """With all places checked."""
     from experiments.io.progress import stage_bar
     from experiments.regress.baseline import baseline_path
     from experiments.regress.junit import junit

@@ -55,14 +55,25 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Replay, write, print the table; 1 if anything did not hold."""
-    import sys
     from pathlib import Path
 
+    from experiments.io.held_folder import held_folder
     from experiments.io.options import check_folder
-    from icage.errors import InputError
+    from experiments.replay.files import ALL
 
     folder = Path(args.out)
     cases, name = _cases(args)
+    check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
+    with held_folder(folder, "replay"):
+        return _run(args, folder, cases, name)
+
+
+def _run(args: argparse.Namespace, folder: Path, cases: tuple[Case, ...], name: str) -> int:
+    """With the folder to itself."""
+    import sys
+
+    from icage.errors import InputError
+
     searching = cases[0].target is None
     if args.grasps is not None and not searching:
         raise InputError(f"--grasps {args.grasps}: {args.case} comes with its grasp; leave it out")
@@ -78,6 +89,7 @@ def run(args: argparse.Namespace) -> int:
     from experiments.io.progress import stage_bar
     from experiments.io.whole_folder import whole_folder
     from experiments.replay.files import ALL, VIDEO, regions_by_grasp, write_results
+    from experiments.replay.recorded_trial import check_kind
     from experiments.replay.run import (  # only now: engine and planner take a second to load
         check_discs,
         replay,
@@ -86,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
     from icage.sampling import SamplingError
 
     sources = [file for case in cases for file in case.sources]
-    check_folder("--out", folder, ALL, sources)
+    check_kind("--out", folder, ALL)
     check_discs(cases)
     if searching:
         names = [NUMBERED.format(k) for k in range(1, count + 1)]

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from experiments.cases.asked import add_case_options
-from experiments.io.options import count, file_name, number, positive, seed
+from experiments.io.options import add_any_code, count, file_name, number, positive, seed
 from experiments.study.inputs.fields import HELP
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def add_parser(subparsers: Any) -> None:
         help="go on with the study in DIR; CASE and all the rest may be left out, and "
         "more --trials asked for",
     )  # fmt: skip
+    add_any_code(parser)
     parser.add_argument(
         "--threads", metavar="T", type=count, default=None, help="threads to run on (one per core)"
     )
@@ -87,12 +88,14 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(listing()))
         return 0
 
-    from experiments.study.run.session import run_session, session_of
+    from experiments.study.run.session import held, run_session, session_of
     from icage.kernels.compiled import long_job
 
-    session: Session = session_of(_given(args), args.out, args.resume, args.shard)
-    long_job()
-    lines = run_session(session, args.threads, args.scheduler, args.figures)
+    given = _given(args)
+    with held(args.out):
+        session: Session = session_of(given, args.out, args.resume, args.shard, args.any_code)
+        long_job()
+        lines = run_session(session, args.threads, args.scheduler, args.figures)
     print("\n".join(lines))
     return 0
 

@@ -28,6 +28,10 @@ class Schema(Protocol):
         """Words kept with the table."""
         ...
 
+    def equals(self, other: Any) -> bool:
+        """Whether names and types are the same."""
+        ...
+
     def get_field_index(self, name: str) -> int:
         """The place of a column, -1 if there is none."""
         ...

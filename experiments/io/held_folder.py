@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
 from icage.errors import InputError, OutputError
+from icage.staging import sweep
 
 try:
     import fcntl
@@ -23,7 +24,8 @@ _TRIES: Final = 10
 def held_folder(path: Path, who: str) -> Generator[None]:
     """Make the folder and hold it; the hold ends with the process, however that ends.
 
-    ``who`` names what would be in the way: "study".
+    ``who`` names what would be in the way: "study". What killed processes left there is swept; a
+    folder that was made and is empty in the end is removed again.
 
     Raises
     ------
@@ -32,12 +34,28 @@ def held_folder(path: Path, who: str) -> Generator[None]:
     OutputError:
         It cannot be made.
     """
-    handle = _held(path, who)
+    with folder_for_a_while(path):
+        handle = _held(path, who)
+        try:
+            sweep(path)
+            yield
+        finally:
+            if handle is not None:
+                os.close(handle)
+
+
+@contextmanager
+def folder_for_a_while(path: Path) -> Generator[None]:
+    """Make the folder and those above it; what is made and stays empty goes with the block."""
+    with writable(path):
+        made = [part for part in (path, *path.absolute().parents) if not part.exists()]
+        path.mkdir(parents=True, exist_ok=True)
     try:
         yield
     finally:
-        if handle is not None:
-            os.close(handle)
+        for part in made:  # deepest first; only while empty
+            with suppress(OSError):
+                part.rmdir()
 
 
 def _held(path: Path, who: str) -> int | None:
@@ -66,6 +84,9 @@ def _held(path: Path, who: str) -> int | None:
                 return handle
         except FileNotFoundError:
             pass
+        except OSError as error:
+            os.close(handle)
+            raise OutputError(f"{str(path)!r} cannot be used: {error.strerror}") from error
         os.close(handle)
     raise InputError(f"{str(path)!r} is made and removed by others all the time")
 

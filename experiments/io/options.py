@@ -6,6 +6,7 @@ import argparse
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from icage.errors import InputError, OutputError
 from icage.formats.whole_files import check_folder_writable, check_writable
@@ -83,6 +84,16 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_any_code(parser: Any) -> None:
+    """``--any-code``."""
+    parser.add_argument(
+        "--any-code",
+        action="store_true",
+        help="take what other sources of the same version have computed, before or on other "
+        "machines; the record says so",
+    )
+
+
 def check_output(option: str, target: str | None, *inputs: Path) -> None:
     """Refuse an output file that cannot be made, or is one of the inputs, before any work.
 
@@ -94,6 +105,7 @@ def check_output(option: str, target: str | None, *inputs: Path) -> None:
     if target is None or target == "-":
         return
     path = Path(target)
+    check_text(option, path)
     try:
         if path.is_dir():
             raise InputError(f"{option} {target!r} is a folder; a file name is needed")
@@ -123,9 +135,10 @@ def check_folder(
     Raises
     ------
     InputError:
-        It or the nearest folder above it is a file, or may not be written to; one of the files
-        is an input.
+        It or the nearest folder above it is a file, or may not be written to, or its disk is
+        full; its name is no text; one of the files is an input or a folder.
     """
+    check_text(option, folder)
     try:
         nearest = next(part for part in (folder, *folder.absolute().parents) if part.exists())
         if not nearest.is_dir():
@@ -134,11 +147,29 @@ def check_folder(
             )
         check_folder_writable(nearest)
         for name in names:
+            if (folder / name).is_dir():
+                raise InputError(f"{option} {str(folder)!r}: {name} is a folder there")
             if _is_one_of(folder / name, inputs):
                 raise InputError(f"{option} {str(folder)!r}: {name} would overwrite an input file")
     except (OSError, ValueError) as error:
         raise InputError(
             f"{option} {str(folder)!r} cannot be written to: {reason(error)}"
+        ) from error
+
+
+def check_text(option: str, path: Path) -> None:
+    """Refuse an output path that is no UTF-8: libraries and pages that name it could not.
+
+    Raises
+    ------
+    InputError:
+        It is none.
+    """
+    try:
+        str(path).encode()
+    except UnicodeEncodeError as error:
+        raise InputError(
+            f"{option} {str(path)!r} is no UTF-8 text; another name is needed"
         ) from error
 
 

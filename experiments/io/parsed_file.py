@@ -20,9 +20,11 @@ def parsed_file(
         It is larger, cannot be read, or is of no such format.
     """
     try:
-        if path.stat().st_size > largest:
+        with path.open("rb") as stream:  # a device has no size, and no end
+            content = stream.read(largest + 1)
+        if len(content) > largest:
             raise error(f"{str(path)!r} is larger than {largest} bytes")
-        return parse(path.read_text(encoding="utf-8"))
+        return parse(content.decode("utf-8").replace("\r\n", "\n"))
     except OSError as found:
         raise error(f"{str(path)!r} cannot be read: {found.strerror}") from found
     except (ValueError, RecursionError) as found:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import NoReturn
 
+from experiments.io.one_line import printable, unguarded
+
 
 @contextmanager
 def _bars(delay: float, one: bool) -> Generator[Callable[[str, int, int, str], None]]:
@@ -28,7 +30,12 @@ def _bars(delay: float, one: bool) -> Generator[Callable[[str, int, int, str], N
             if one:
                 close()
             bars[stage] = tqdm(
-                total=total, desc=stage, delay=delay, leave=False, disable=None, file=sys.stderr
+                total=total,
+                desc=printable(stage),
+                delay=delay,
+                leave=False,
+                disable=None,
+                file=unguarded(sys.stderr),
             )
         if words:
             bars[stage].set_postfix_str(words, refresh=False)

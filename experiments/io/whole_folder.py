@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from icage.errors import OutputError
+from experiments.io.held_folder import folder_for_a_while, writable
+from icage.staging import staging
 
 
 @contextmanager
@@ -21,24 +20,8 @@ def whole_folder(folder: Path, names: Sequence[str]) -> Generator[Path]:
     Raises
     ------
     OutputError:
-        Nothing can be written there.
+        Nothing can be written there, or not all of them can be moved: then none is.
     """
-    made = [part for part in (folder, *folder.parents) if not part.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".replay-", dir=folder))
-    except OSError as error:
-        raise OutputError(f"{str(folder)!r} cannot be written to: {error.strerror}") from error
-    try:
-        yield staging
-        for name in names:
-            written = staging / name
-            if written.exists():
-                written.replace(folder / name)
-            else:
-                (folder / name).unlink(missing_ok=True)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-        for part in made:  # deepest first; only while empty
-            if part.is_dir() and not any(part.iterdir()):
-                part.rmdir()
+    with folder_for_a_while(folder), writable(folder), staging(folder) as place:
+        yield place.new
+        place.move(names)

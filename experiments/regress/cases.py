@@ -35,6 +35,8 @@ class Effort:
         Attackers that also measure sigma_max.
     second:
         Closings of each set, and random attacks, in the second engine.
+    mus:
+        [1] Coefficients of friction at which as many hands are closed from below sigma_first(mu).
     """
 
     level: Level
@@ -42,12 +44,13 @@ class Effort:
     attacks: int
     measuring: tuple[str, ...]
     second: int
+    mus: tuple[float, ...] = ()
 
 
 EFFORTS: Final = {
-    "fast": Effort("fast", 40, 8, ("guided",), 4),
-    "default": Effort("default", 100, 24, ("guided",), 6),
-    "full": Effort("full", 200, 200, ("guided",), 20),
+    "fast": Effort("fast", 40, 8, ("guided",), 4, (0.1, 0.4)),
+    "default": Effort("default", 100, 24, ("guided",), 6, (0.1, 0.4)),
+    "full": Effort("full", 200, 200, ("guided",), 20, (0.05, 0.1, 0.2, 0.4, 0.8)),
 }
 
 

@@ -26,6 +26,12 @@ def _checks(row: Row) -> Iterator[str]:
             yield f"the two methods disagree on the derived case: {line}"
     for closed in row.closed:
         yield from _closings(closed, "", row.seed)
+    for ends in row.rubbed:
+        where = f"friction {ends.mu:g}, below sigma_first(mu)"
+        if not ends.in_target.all():
+            yield f"{where}: {int(ends.in_target.sum())} of {len(ends)} ended in the target"
+        if ends.penetration > DEEPEST_MOVING:
+            yield f"{where}: a finger sank {ends.penetration:.2g} diameters in"
     if row.escape is not None:
         yield from (sentence.split(": ", 1)[-1] for sentence in row.escape.failures)
     if row.shake_error is not None:

@@ -7,6 +7,8 @@ from typing import Any
 
 from experiments.escape.run import AttackResult
 from experiments.io.intervals import rate_upper
+from experiments.jams.closings import Ends
+from experiments.jams.document import ends_document
 from experiments.regress.checks import checks
 from experiments.regress.closings import Closed
 from experiments.regress.measure import Row
@@ -26,8 +28,18 @@ def row_document(row: Row) -> dict[str, Any]:
         "attacks": _attacks(row),
         "shake": _shake(row),
         "second": _second(row),
+        "friction": [_rubbed(row, ends) for ends in row.rubbed],
         "failures": list(checks(row)),
     }
+
+
+def _rubbed(row: Row, ends: Ends) -> dict[str, Any]:
+    assert row.physical is not None
+    level = ends.level / row.physical.cage.sigma_0
+    counts = ends_document(ends)
+    kept = ("mu", "trials", "target", "stray", "position_error", "angle_error", "penetration")
+    first = level if math.isfinite(level) else None
+    return {"sigma_first": first, **{key: counts[key] for key in kept}}
 
 
 def _levels(cage: Cage) -> dict[str, Any]:

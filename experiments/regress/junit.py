@@ -6,6 +6,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from experiments.io.one_line import printable
+
 
 def junit(rows: Sequence[Mapping[str, Any]], seconds: Sequence[float]) -> str:
     """A document; ``seconds`` of each case."""
@@ -23,11 +25,11 @@ def junit(rows: Sequence[Mapping[str, Any]], seconds: Sequence[float]) -> str:
             suite,
             "testcase",
             classname="icage.regress",
-            name=row["case"],
+            name=printable(row["case"]),
             time=f"{spent:.1f}",
         )
         if row["failures"]:
-            failure = ET.SubElement(case, "failure", message=row["failures"][0])
-            failure.text = "\n".join(row["failures"])
+            failure = ET.SubElement(case, "failure", message=printable(row["failures"][0]))
+            failure.text = "\n".join(map(printable, row["failures"]))
     ET.indent(suite)
     return ET.tostring(suite, encoding="unicode", xml_declaration=True) + "\n"

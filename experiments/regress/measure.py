@@ -10,6 +10,8 @@ import numpy as np
 
 from experiments.cases.with_discs import DerivedCaseError, PhysicalCase, physical_case
 from experiments.escape.run import Escape, at, attacked
+from experiments.jams.closings import Ends
+from experiments.jams.run import below_levels
 from experiments.regress.cases import Effort, Entry
 from experiments.regress.closings import SETS, Close, Closed, close_set
 from experiments.shake.run import ShakeError, Shaken, shake_case
@@ -74,6 +76,8 @@ class Row:
         None if there is nothing to close into (not a cage), or no discs fit; ``why`` says which.
     seed, effort:
         With which it comes out again.
+    rubbed:
+        Closings with friction, from below sigma_first(mu).
     """
 
     name: str
@@ -88,6 +92,7 @@ class Row:
     shaken: Shaken | None = None
     shake_error: str | None = None
     second: Second | None = None
+    rubbed: tuple[Ends, ...] = field(default=())
 
 
 def measure(entry: Entry, effort: Effort, seed: int = SEED) -> Row:
@@ -127,6 +132,8 @@ def in_physics(row: Row, physical: PhysicalCase) -> Row:
             row = replace(row, shaken=shake_case(physical, seed))
         except ShakeError as error:
             row = replace(row, shake_error=str(error))
+    if effort.closings and effort.mus:
+        row = replace(row, rubbed=below_levels(physical, effort.mus, effort.closings, seed))
     if effort.attacks:
         escape = attacked(physical, effort.attacks, seed, 1, _silent, effort.measuring)
         row = replace(row, escape=escape)

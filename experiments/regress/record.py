@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from experiments.io.arrow_table import Table
+from experiments.io.parquet_files import words_of, write_table
 from experiments.io.versions import versions
 from experiments.io.whole_folder import whole_folder
 from experiments.regress.measure import Row
@@ -56,4 +56,4 @@ def write_records(records: list[Record], seed: int, folder: Path) -> None:
         write_json(document, str(staging / JSON))
         if tables:
             whole = pa.concat_tables(tables).unify_dictionaries()
-            pq.write_table(whole, staging / TRIALS, compression="zstd")
+            write_table(whole, staging / TRIALS, words_of(whole))

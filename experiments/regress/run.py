@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from experiments.io.workers import in_processes
 from experiments.regress.baseline import (
     baseline_document,
     baseline_path,
@@ -84,18 +85,12 @@ def _all(
             done.append(one_case(entry, effort))
             report("cases", number + 1, len(entries))
     else:
-        spawn = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
-            futures = [pool.submit(one_case, entry, effort) for entry in entries]
-            ended: list[Future[Done]] = []
-
-            def count(future: Future[Done]) -> None:
-                ended.append(future)
-                report("cases", len(ended), len(entries))
-
-            for future in futures:
-                future.add_done_callback(count)
-            done = [future.result() for future in futures]
+        found: dict[str, Done] = {}
+        with closing(in_processes(partial(one_case, effort=effort), entries, workers)) as pieces:
+            for entry, one in pieces:
+                found[entry.name] = one
+                report("cases", len(found), len(entries))
+        done = [found[entry.name] for entry in entries]
     rows, records, seconds = zip(*done, strict=True)
     return list(rows), list(records), list(seconds)
 

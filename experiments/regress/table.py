@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
+from experiments.io.one_line import markdown as as_markdown
 
 HEAD: Final = (
     "case", "discs", "sigma_max/sigma_0", "guaranteed", "rest", "outside", "random", "guided",
-    "rigid", "guided above", "measured off", "deepest", "held", "second", "verdict",
+    "rigid", "guided above", "measured off", "deepest", "held", "second", "friction", "verdict",
 )  # fmt: skip
 
 BOTH_HEAD: Final = (
@@ -24,7 +26,9 @@ LEGEND: Final = (
     "attacks below sigma_max that got the object out, of how many. guided above: attacks above it "
     "that did. measured off: where guided attacks begin to succeed, from the planner's sigma_max. "
     "deepest: finger over the diameter, closings | attacks. held: after closing, rank of the "
-    "contacts. second: the other engine's guaranteed + random escapes."
+    "contacts. second: the other engine's guaranteed + random escapes. friction: closings with "
+    "friction from below sigma_first(mu) that ended within its tolerance of the target, and how "
+    "many coefficients."
 )
 
 
@@ -61,6 +65,14 @@ def _aligned(lines: list[tuple[str, ...]]) -> Iterator[str]:
 
 def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Iterator[str]:
     """A page: title, table, legend, bottom line, the command that makes it again."""
+    rows = [
+        {
+            **row,
+            "case": as_markdown(row["case"]),
+            "failures": [as_markdown(sentence) for sentence in row["failures"]],
+        }
+        for row in rows
+    ]
     yield f"# {title}"
     yield ""
     yield from _piped(table(rows))
@@ -78,7 +90,7 @@ def markdown(rows: Sequence[Mapping[str, Any]], title: str, command: str) -> Ite
 
 
 def _piped(lines: list[tuple[str, ...]]) -> Iterator[str]:
-    cells = [[text.replace("|", "/") for text in line] for line in lines]
+    cells = [[re.sub(r"(?<!\\)\|", "/", text) for text in line] for line in lines]
     yield f"| {' | '.join(cells[0])} |"
     yield f"|{'---|' * len(cells[0])}"
     yield from (f"| {' | '.join(line)} |" for line in cells[1:])
@@ -91,8 +103,9 @@ def _below(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     if settings is not None:
         constant, damping = settings["solref"]
         yield (
-            f"seed {rows[0]['seed']}, no friction, time step {settings['time_step']} s, contacts "
-            f"with a time constant of {constant:g} s and a damping ratio of {damping:g}"
+            f"seed {rows[0]['seed']}, friction only where it is named, time step "
+            f"{settings['time_step']} s, contacts with a time constant of {constant:g} s and a "
+            f"damping ratio of {damping:g}"
         )
     for row in rows:
         yield from (f"{row['case']}: {sentence}" for sentence in row["failures"])
@@ -153,6 +166,7 @@ def _row(row: Mapping[str, Any]) -> tuple[str, ...]:
         _deepest(closings, attacks),
         _held(row["shake"]),
         _second(row["second"]),
+        _friction(row.get("friction")),
         _verdict(row),
     )
 
@@ -229,6 +243,13 @@ def _second(second: Mapping[str, Any] | None) -> str:
     guaranteed = second["closings"].get("guaranteed")
     closed = "-" if guaranteed is None else f"{guaranteed['target']}/{guaranteed['trials']}"
     return f"{closed} + {_escapes(second['random_below'])}"
+
+
+def _friction(runs: Sequence[Mapping[str, Any]] | None) -> str:
+    if not runs:
+        return "-"
+    target, trials = sum(run["target"] for run in runs), sum(run["trials"] for run in runs)
+    return f"{target}/{trials}, {len(runs)}"
 
 
 def _verdict(row: Mapping[str, Any]) -> str:

@@ -11,10 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from experiments.figures.plan import draw_plan, figure_regions
 from experiments.io.arrow_table import Column, Table
+from experiments.io.parquet_files import words_of, write_table
 from experiments.io.versions import versions
 from experiments.replay.run import Replay, Report, Run, run_document
 from icage.cells.membership import VERDICTS, query
@@ -37,7 +37,8 @@ def write_results(
     first = done.runs[0]
     document = replay_document(done, name, regions)
     write_json(document, str(folder / JSON))
-    pq.write_table(trial_table(done), folder / TRIALS, compression="zstd")
+    table = trial_table(done)
+    write_table(table, folder / TRIALS, words_of(table))
     draw_plan(
         first.cage, regions[first.case.name], first.case.name, first.case.unit, folder / REGIONS
     )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
 from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
 from numpy.typing import NDArray
+
+from icage.errors import OutputError
 
 _OPTIONS = ["-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
 
@@ -15,7 +17,13 @@ _OPTIONS = ["-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
 def write_mp4(
     frames: Iterable[NDArray[np.uint8]], path: Path, size: tuple[int, int], fps: int
 ) -> int:
-    """Write frames (height, width, 4); returns how many. ``size`` = (width, height), both even."""
+    """Write frames (height, width, 4); returns how many. ``size`` = (width, height), both even.
+
+    Raises
+    ------
+    OutputError:
+        The encoder has ended before all was written, as on a full disk.
+    """
     count = 0
     writer = imageio_ffmpeg.write_frames(
         str(path),
@@ -32,8 +40,18 @@ def write_mp4(
     writer.send(None)
     try:
         for frame in frames:
-            writer.send(np.ascontiguousarray(frame))
+            _send(writer, frame, path)
             count += 1
     finally:
         writer.close()
     return count
+
+
+def _send(writer: Generator[None, object], frame: NDArray[np.uint8], path: Path) -> None:
+    try:
+        writer.send(np.ascontiguousarray(frame))
+    except OSError as error:
+        last = (str(error).strip().splitlines() or [""])[-1]
+        raise OutputError(
+            f"{path.name} cannot be written: the encoder has ended: {last}"
+        ) from error

@@ -7,26 +7,26 @@ machine a trial repeats to the last bit, alone or among a thousand.
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, ParamSpec, TypeVar
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import shapely
 
 from experiments.io.arrow_table import Table
-from experiments.io.parsed_file import parsed_file
+from experiments.io.own_files import own_json
+from experiments.io.parquet_files import read_table, rows_and_words, words_of
 from experiments.io.versions import versions
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
 from icage.errors import InputError
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from icage.staging import sweep
 from sim.closing.batch import close_many
 from sim.closing.judge import OUTCOMES, Verdicts, judge
 from sim.closing.outcome import ClosingOutcomes
@@ -35,7 +35,20 @@ from sim.world.scene import Scene
 
 JSON, TRIALS = "replay.json", "trials.parquet"
 
+STUDY: Final = "study.json"
+"""What a study writes, beside a table of the same name as ours."""
+
+FORMAT: Final = "icage-replay/1"
+TABLE_FORMAT: Final = b"icage-trials/1"
+
 _POSE = ("x", "y", "theta", "sigma")
+
+_COLUMNS: Final = (
+    "run", "grasp", "set", "trial", "seed", "verdict", "outcome", "grasp_id", "steps",
+    *(f"start_{name}" for name in _POSE), *(f"end_{name}" for name in _POSE),
+    "position_error", "angle_error", "penetration_max", "penetration_rest",
+)  # fmt: skip
+"""Of a trial, as far as it is closed again and compared."""
 
 _BEFORE: Final = {"remains": 0.0, "computed_contacts": 0}
 """Settings that a replay recorded before there were such did not have."""
@@ -126,12 +139,16 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
     RecordingError:
         No replay is there, it was recorded before outlines were kept, or it has no such row.
     """
+    sweep(folder)  # a replay that died while its files took their places
     document = _document(folder / JSON)
     table = _table(folder / TRIALS)
     if not 0 <= index < table.num_rows:
         raise RecordingError(
             f"{str(folder)!r} has no trial {index}; it has {table.num_rows}, counted from 0"
         )
+    missing = [name for name in _COLUMNS if name not in table.column_names]
+    if missing:
+        raise RecordingError(f"{str(folder / TRIALS)!r} has no column {missing[0]!r}")
     row: dict[str, Any] = table.slice(index, 1).to_pylist()[0]
     try:
         run = document["runs"][row["run"]]
@@ -235,17 +252,61 @@ def _grasp(grasp: dict[str, Any], sigma_0: float) -> GraspMinimum:
 
 
 def _document(path: Path) -> dict[str, Any]:
-    document = parsed_file(path, json.loads, "JSON", _LARGEST, RecordingError)
-    found = document.get("format") if isinstance(document, dict) else None
-    if found != "icage-replay/1":
-        raise RecordingError(f"{str(path)!r} has format {found!r}; 'icage-replay/1' is needed")
+    document = own(own_json, path, _LARGEST)
+    found = document.get("format")
+    if found != FORMAT:
+        raise RecordingError(f"{str(path)!r} has format {found!r}; {FORMAT!r} is needed")
     return document
 
 
 def _table(path: Path) -> Table:
+    table = own(read_table, path)
+    if words_of(table).get(b"format") != TABLE_FORMAT:
+        raise RecordingError(f"{str(path)!r} is no table of a replay")
+    return table
+
+
+Given = ParamSpec("Given")
+Found = TypeVar("Found")
+
+
+def own(read: Callable[Given, Found], *given: Given.args, **named: Given.kwargs) -> Found:
+    """What is read of a file of a replay; whatever is wrong with it is the recording's fault.
+
+    Raises
+    ------
+    RecordingError:
+        It cannot be read, or is not as it was written.
+    """
     try:
-        return pq.read_table(path)
-    except OSError as error:
-        raise RecordingError(f"{str(path)!r} cannot be read: {error.strerror or error}") from error
-    except pa.ArrowException as error:
-        raise RecordingError(f"{str(path)!r} is not a table of trials: {error}") from error
+        return read(*given, **named)
+    except InputError as error:
+        raise RecordingError(str(error)) from error
+
+
+def check_kind(option: str, folder: Path, names: Sequence[str]) -> None:
+    """Refuse a folder in which a replay would take the place of anything but a replay.
+
+    ``names`` are the files that it writes there.
+
+    Raises
+    ------
+    InputError:
+        One of them is there without a replay's document, or with a table that is of no replay.
+    """
+    there = [name for name in (STUDY, *names) if os.path.lexists(folder / name)]
+    if not there:
+        return
+    if STUDY in there or JSON not in there:
+        raise InputError(
+            f"{option} {str(folder)!r} holds {there[0]}, which no replay has written; name another "
+            "folder, or move it away"
+        )
+    _document(folder / JSON)
+    if TRIALS in there:
+        _, words = own(rows_and_words, folder / TRIALS)
+        if words.get(b"format") != TABLE_FORMAT:
+            raise InputError(
+                f"{option} {str(folder)!r} holds {TRIALS}, which no replay has written; name "
+                "another folder, or move it away"
+            )

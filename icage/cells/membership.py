@@ -22,6 +22,7 @@ from icage.cells.work import CageWork, work_of
 from icage.errors import GeometryError, PlacementError
 from icage.geometry.near_frame import NearFrame
 from icage.kernels.locate import Buckets, build_buckets, cells_of, depth_inside, nodes_of
+from icage.library_faults import geometry_told
 from icage.placement_class import PlacementClass, PlacementCode
 from icage.tolerance import COLLISION, LEVEL
 
@@ -33,7 +34,7 @@ TARGET, CAGED, OTHER, ESCAPES, COLLIDES = PlacementCode
 _GRID = 96
 """Squares along a side of the grid of point location."""
 
-_HELD = 1e-12
+HELD: Final = 1e-12
 """[diameter] A piece holds a finger this far outside it: the rounding of a position."""
 
 
@@ -165,6 +166,7 @@ class Locator:
         return cells_of(self.free_space.pieces, at, self.buckets, tolerance)
 
 
+@geometry_told()
 def query(cage: Cage, placements: FloatArray) -> Answers:
     """Verdicts about placements (n, 4) = x, y, theta, sigma in the object's frame.
 
@@ -197,7 +199,7 @@ def query(cage: Cage, placements: FloatArray) -> Answers:
     found = (
         np.full(fingers.shape[:2], -1)
         if work is None
-        else _locator(work).cells(fingers, _HELD * size)
+        else _locator(work).cells(fingers, HELD * size)
     )
     collides = _collides(cage, frame, fingers, found >= 0)
     verdict[collides] = COLLIDES
@@ -246,9 +248,17 @@ def _cells(work: CageWork, fingers: FloatArray, found: IntArray, size: float) ->
     cells = found.copy()
     lost = np.flatnonzero((cells < 0).any(axis=1))
     if len(lost):
-        near = 4.0 * max(COLLISION * size, work.sagitta)
+        near = held_when_lost(work.sagitta, size)
         cells[lost] = _locator(work).cells(fingers[lost], near)
     return cells
+
+
+def held_when_lost(sagitta: float, size: float) -> float:
+    """How far outside its piece a finger may lie that no piece holds but for rounding, [unit].
+
+    ``size`` is the object's diameter; ``sagitta`` is that of ``CageWork``.
+    """
+    return 4.0 * max(COLLISION * size, sagitta)
 
 
 def _inside_nodes(work: CageWork, cells: IntArray) -> IntArray:

@@ -24,6 +24,7 @@ from icage.cells.work import CageWork, work_of
 from icage.errors import InputError
 from icage.geometry.geos import union
 from icage.geometry.near_frame import NearFrame
+from icage.library_faults import geometry_told
 from icage.tolerance import REGION_LEVEL
 
 Polygons: TypeAlias = NDArray[np.object_]
@@ -61,6 +62,7 @@ class FingerRegion:
     geometry: shapely.MultiPolygon
 
 
+@geometry_told()
 def caging_regions(
     cage: Cage, level: float | None = None, gap: float = 1e-3
 ) -> tuple[FingerRegion, ...]:
@@ -95,6 +97,7 @@ def caging_regions(
     return tuple(sorted(regions, key=lambda r: (r.bound != "inner", r.finger)))
 
 
+@geometry_told()
 def outer_bounds(
     cage: Cage, level: float | None = None, gap: float = 1e-3
 ) -> tuple[shapely.MultiPolygon, ...]:

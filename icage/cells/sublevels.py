@@ -46,13 +46,17 @@ _STRETCH = 10_000
 Done = TypeVar("Done")
 
 
-class _Minima(NamedTuple):
-    """The minima that count, by sigma: births, merges and ``into`` (m,), contacts (m, 3, 2)."""
+class Minima(NamedTuple):
+    """The minima that count, by sigma: births, merges and ``into`` (m,), contacts (m, 3, 2).
+
+    ``cells`` (m, 3) are those in which they lie; contacts are in the free space's frame.
+    """
 
     births: FloatArray
     merges: FloatArray
     into: IntArray
     contacts: FloatArray
+    cells: IntArray
 
 
 def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Sublevels:
@@ -67,7 +71,7 @@ def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Subleve
     """
     frame = NearFrame.of(outline)
     free_space = FreeSpace.around(frame.outline_into(outline), hand)
-    found = _minima(free_space, workers)
+    found = minima_in(free_space, workers)
     return Sublevels(
         outline=outline,
         hand=hand,
@@ -78,7 +82,14 @@ def sublevels_of(outline: Outline, hand: HandShape, workers: int = 1) -> Subleve
     )
 
 
-def _minima(free_space: FreeSpace, workers: int) -> _Minima:
+def minima_in(free_space: FreeSpace, workers: int = 1) -> Minima:
+    """The same for a free space that has been cut already, of which discs' inner polygons have one.
+
+    Raises
+    ------
+    InputError:
+        More than ``MOST_CELLS`` cells hold a hand.
+    """
     pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
     cap = _AT_CAP * free_space.cap
     with ThreadPoolExecutor(max_workers=workers) as threads:
@@ -127,7 +138,7 @@ def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> An
     return np.concatenate(parts)
 
 
-def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> _Minima:
+def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> Minima:
     """Minima deeper than the depth cut, and no pinched hands."""
     births, merges = low.sigma, ends.merged
     cut = DEPTH_CUT * free_space.pieces.diameter
@@ -144,4 +155,5 @@ def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: End
     d, w = hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
     fingers = d[:, None] + w[:, None] * free_space.hand.z
     contacts = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
-    return _Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts)
+    held = np.array(cells[kept], dtype=np.int64)
+    return Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts, held)

@@ -10,7 +10,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 
-_RESTING = 1e-3
+RESTING = 1e-3
 """[rad] Half the chord on which a contact of an arc rests. Were the contact a corner of the chords,
 its normal would be off by half a step on either side, and a grasp could slide away that the arc
 holds. The chord lies only 5e-7 radii inside."""
@@ -67,7 +67,7 @@ def resting_chords(turn: float, contacts: Iterable[float]) -> list[tuple[float, 
     found: list[tuple[float, float]] = []
     for k, t in enumerate(resting):
         room = [abs(t - u) / 3.0 for u in resting[max(0, k - 1) : k + 2] if u != t]
-        found.append((t, min([_RESTING, t, turn - t, *room])))
+        found.append((t, min([RESTING, t, turn - t, *room])))
     return found
 
 
@@ -91,7 +91,7 @@ def graded_stops(
         s
         for s in stops
         if all(
-            abs(s - t) >= 0.999 * min(_RESTING, t, turn - t) or _own(s, t, resting) for t in resting
+            abs(s - t) >= 0.999 * min(RESTING, t, turn - t) or _own(s, t, resting) for t in resting
         )
     ]
     return even_stops(turn, segments, [*kept, *resting] if touched else kept)

@@ -10,26 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import BoolArray, FloatArray
+from icage.discs.kernels.forces import pushing_of
 from icage.hand import HandShape
 
 _PUSHES = 1e-9
 """[1] A force this small, over the largest, is none."""
 
-_ROUNDING = 10.0 * float(np.finfo(np.float64).eps)
-"""[1] A column that shortens the miss by less, over the size of all columns, does not help."""
-
-_TURNS = 3
-"""Columns that are taken up, over their number; more is going round in the circles of rounding."""
-
-_APART = 1e-4
-"""[1] Least over largest singular value of columns all of which may press at once. Of columns that
-are nearly alike, as where an arc goes over into its edge, one is enough; taking them up one by one
-finds that."""
-
 _WEDGED = 1e6
 """[1] Forces beyond this, over the vector that they balance, come from rounding."""
-
-_TINY = float(np.finfo(np.float64).tiny)
 
 
 def finger_maps(hand: HandShape) -> FloatArray:
@@ -45,8 +33,7 @@ def slope_of_half_square(v: FloatArray) -> FloatArray:
 def pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]:
     """Forces >= 0 (k,) whose sum over columns (m, k) comes nearest to a vector, and the miss.
 
-    The active set method of [Lawson1974], for a handful of columns; scipy's takes as long to be
-    loaded as a plan.
+    The active set method of [Lawson1974], for a handful of columns.
 
     Examples
     --------
@@ -54,52 +41,8 @@ def pushing(columns: FloatArray, wanted: FloatArray) -> tuple[FloatArray, float]
     >>> force.tolist(), miss
     ([2.0, 0.0], 3.0)
     """
-    count = columns.shape[1]
-    force, off = np.zeros(count), wanted
-    if not count:
-        return force, float(np.linalg.norm(wanted))
-    best, _, rank, size = np.linalg.lstsq(columns, wanted, rcond=None)
-    apart = rank == count and size[-1] > _APART * size[0]
-    if apart and best.min() > 0.0:  # all press: most often so, and nothing else to try
-        return np.asarray(best, dtype=np.float64), float(np.linalg.norm(wanted - columns @ best))
-    least = _ROUNDING * max(columns.shape) * float(np.abs(columns).sum(axis=0).max())
-    pressing: list[int] = []
-    for _ in range(_TURNS * count):
-        helps = columns.T @ off
-        helps[pressing] = 0.0
-        most = int(np.argmax(helps))
-        if not helps[most] > least:
-            break
-        pressing.append(most)
-        pressing, force = _without_pulling(columns, wanted, pressing, force)
-        off = wanted - columns @ force
-    return force, float(np.linalg.norm(off))
-
-
-def _without_pulling(
-    columns: FloatArray, wanted: FloatArray, pressing: list[int], force: FloatArray
-) -> tuple[list[int], FloatArray]:
-    """Forces (k,) of the least miss, of those that press and would not pull then; which these are.
-
-    From forces that do not pull straight to the best ones, as far as none pulls; who would pull
-    first is left out.
-    """
-    while pressing:
-        best = np.linalg.lstsq(columns[:, pressing], wanted, rcond=None)[0]
-        found = np.zeros(len(force))
-        if best.min() > 0.0:
-            found[pressing] = best
-            return pressing, found
-        now = force[pressing]
-        room = np.full(len(now), np.inf)
-        pulls = best <= 0.0
-        room[pulls] = now[pulls] / np.maximum(now - best, _TINY)[pulls]
-        way = float(room.min())
-        found[pressing] = now + way * (best - now)
-        pressing = [k for k, r in zip(pressing, room, strict=True) if r > way]
-        force = np.zeros(len(force))
-        force[pressing] = found[pressing]
-    return pressing, np.zeros(len(force))
+    found = pushing_of(np.ascontiguousarray(columns), wanted)
+    return found.force, found.miss
 
 
 def balanced(columns: FloatArray, wanted: FloatArray, within: float) -> FloatArray | None:

@@ -114,9 +114,9 @@ def _local_cages(
             break
         grown = offsets(outline, radius, segments, through)
         closed = grown.closed_pockets
-        arc = radius if through else 0.0
+        chord = quadrant_chord(radius, segments) if through else 0.0
         for inner, polygon in ((True, grown.inner), (False, grown.outer)):
-            found = local_cage_on(polygon, hand, true, segments, arc, method)
+            found = local_cage_on(polygon, hand, true, chord, method)
             if found is not None:
                 local_cages.append(ArcLocalCage(segments, inner, found, grown.sagitta))
         if not local_cages:
@@ -130,17 +130,23 @@ def _narrow(local_cages: list[ArcLocalCage]) -> bool:
     return low > 0.0 and (low == high or high / low - 1.0 < SIGMA_MAX_GAP)
 
 
-def local_cage_on(
-    polygon: Outline, hand: HandShape, true: FloatArray, segments: int, arc: float, method: Method
-) -> LocalCage | None:
-    """What is round the target on a polygon of some segments a quadrant; None if it is not held.
+def quadrant_chord(radius: float, segments: int) -> float:
+    """Longest chord of an arc with so many segments a quadrant, [unit], or a little more."""
+    return radius * 0.5 * np.pi / segments
 
-    ``arc`` is the radius of an arc that carries a contact, or 0: on chords that contact may rest
-    anywhere on its own chord.
+
+def local_cage_on(
+    polygon: Outline, hand: HandShape, true: FloatArray, chord: float, method: Method
+) -> LocalCage | None:
+    """What is round the target on a polygon; None if it is not held.
+
+    ``chord`` [unit] is the length of the chord that a contact on an arc rests on, anywhere; 0 if
+    there is none.
     """
-    chord = 2.0 * arc * 0.5 * np.pi / segments / polygon.diameter
-    reach, turn = max(TARGET_SHIFT, chord), max(TARGET_TURN, 10.0 * chord)
-    return method.local_cage(polygon, hand, true, reach, turn)
+    part = chord / polygon.diameter
+    return method.local_cage(
+        polygon, hand, true, max(TARGET_SHIFT, part), max(TARGET_TURN, 10.0 * part)
+    )
 
 
 def _bracketed(

@@ -16,24 +16,17 @@ from itertools import combinations
 import numpy as np
 
 from icage.arrays import FloatArray
-from icage.discs.balance import balanced, free_directions, pushes, pushing, slope_of_half_square
-from icage.discs.descent import FLAT, closed, way_down
+from icage.discs.balance import balanced, free_directions, pushes, slope_of_half_square
+from icage.discs.descent import FLAT, way_down
 from icage.discs.features import Feature, Features
+from icage.discs.kernels.features import felt, nearly_balanced
+from icage.discs.kernels.newton import BALANCED, STEPS, TOUCHES, Ended, descend, newton
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import FREE_FINGER
 
-_TOUCHES = 1e-10
-"""[diameter] A solved finger is this near to the features it touches, and no deeper in any."""
-
-_BALANCED = 1e-9
-"""[1] Residual of the forces of a solved hand, over its size."""
-
 _ASLANT = 1e-6
 """[1] A touched feature that a direction is inclined to by more is in its way."""
-
-_STEPS = 12
-"""Newton steps; from a polygon's answer five are enough."""
 
 _CHANGES = 8
 """How often the set of touched features may change on the way."""
@@ -44,11 +37,14 @@ _SUBSETS = 40
 _DESCENT = 240
 """Steps of a descent along the true curve."""
 
+_STRETCH = 8
+"""Steps of it from one try of Newton's method to the next."""
+
+_STRIDE = 0.25
+"""[radius] How far a finger goes in one step."""
+
 _NEARLY_BALANCED = 0.1
 """[1] Residual of the forces, over the size of the hand, above which no minimum is near."""
-
-_STANDS = 1e-12
-"""[diameter] A descent that closes by less in a step has come to rest."""
 
 _NUDGE = 0.02
 """[radius] How far a hand at rest on a puncture is pushed off it."""
@@ -113,24 +109,23 @@ class CriticalHands:
         Each finger keeps to the half planes that the nearest points of the edges around it leave:
         all of them free, so that every step is a motion of the hand that never opens it.
         """
-        v = self._features.as_hand(contacts)
-        sigma = math.inf
-        for step in range(_DESCENT):
-            v = closed(self._features, v)
-            if v is None:
+        features = self._features
+        v = features.as_hand(contacts)
+        stride = _STRIDE * features.radius
+        sigma, step = math.inf, 0
+        while step < _DESCENT:
+            way = descend(features.sides, v, sigma, stride, _STRETCH - step % _STRETCH)
+            if way.ended == Ended.LOST:
                 return None
-            now = float(np.hypot(v[2], v[3]))
-            stands = sigma - now < _STANDS
-            if step % 8 == 7 or stands:
-                found = self._solve(self._features.as_contacts(v), reach, 0)
-                if found is not None and found.sigma <= now * self.size * (1.0 + 1e-9):
-                    return found
-            if stands:
-                down = way_down(self._features, v)
+            v, sigma, step = way.v, way.sigma, step + way.steps
+            found = self._solve(features.as_contacts(v), reach, 0)
+            if found is not None and found.sigma <= sigma * self.size * (1.0 + 1e-9):
+                return found
+            if way.ended == Ended.STANDS:
+                down = way_down(features, v)
                 if down is None:
                     return None
-                v = v + _NUDGE * self._features.radius * down
-            sigma = now
+                v = v + _NUDGE * features.radius * down
         return None
 
     def minima_near(self, hands: FloatArray, reach: float) -> list[Critical]:
@@ -139,25 +134,13 @@ class CriticalHands:
         Of hands that touch the same features, to within ``reach`` [unit], only the smallest is
         looked at, and Newton's method is tried where forces nearly balance.
         """
-        features = self._features
-        rows = features.as_hand(hands)
+        rows = self._features.as_hand(hands)
         order = np.argsort(np.hypot(rows[:, 2], rows[:, 3]), kind="stable")
-        touched = features.touched(features.scaled(hands)[order], reach / self.size)
-        # of packed rows as bytes: numpy compares rows of truth values one field after another
-        packed = np.packbits(touched, axis=1)
-        _, first = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_index=True)
-        found: list[Critical] = []
-        for k in np.sort(first).tolist():
-            v = rows[order[k]]
-            near = features.named(touched[k])
-            if len({f.finger for f in near}) < 2:
-                continue
-            _, miss = pushing(features.gaps(v, near).slope.T, slope_of_half_square(v))
-            if miss <= _NEARLY_BALANCED * np.hypot(v[2], v[3]):
-                one = self._solve(features.as_contacts(v), reach, 0)
-                if one is not None:
-                    found.append(one)
-        return sorted(found, key=lambda one: one.sigma)
+        near = nearly_balanced(
+            self._features.sides, rows[order], reach / self.size, _NEARLY_BALANCED
+        )
+        solved = [self._solve(hands[k], reach, 0) for k in order[near].tolist()]
+        return sorted((one for one in solved if one is not None), key=lambda one: one.sigma)
 
     def free_fingers(self, contacts: FloatArray) -> tuple[int, ...]:
         """Fingers (1..) of contacts (fingers, 2) that touch nothing."""
@@ -166,18 +149,17 @@ class CriticalHands:
 
     def _solve(self, contacts: FloatArray, reach: float, descending: int) -> Critical | None:
         start = self._features.as_hand(contacts)
-        near = self._features.near(start, max(reach / self.size, 1e-7))
-        if len({f.finger for f in near}) < 2:
+        feel = felt(self._features.sides, start, max(reach / self.size, 1e-7))
+        near = self._features.named(feel.which)
+        if not near:
             return None
-        gaps = self._features.gaps(start, near)
-        force, _ = pushing(gaps.slope.T, slope_of_half_square(start))
-        likely = [f for f, p in zip(near, pushes(force), strict=True) if p]
+        likely = [f for f, p in zip(near, pushes(feel.force), strict=True) if p]
         known = self._remembered.get((frozenset(likely), descending))
         if known is not None:
             moved = float(np.hypot(*(known.contacts - contacts).T).max())
             if moved <= 0.5 * self._furthest(reach) * self.size:
                 return known
-        touched = [f for f, g in zip(near, gaps.value, strict=True) if g < 1e-7]
+        touched = [f for f, g in zip(near, feel.gap, strict=True) if g < 1e-7]
         for features in (likely, touched):
             found = self._with_changes(start, features, reach, descending)
             if found is not None:
@@ -230,6 +212,17 @@ class CriticalHands:
         self, v: FloatArray, features: list[Feature]
     ) -> tuple[FloatArray, FloatArray] | None:
         """A hand that balances forces, of either sign, and touches all of the features; or None."""
+        fast = newton(self._features.sides, v, self._features.numbers(features))
+        if fast.ended != Ended.IRREGULAR:
+            return (fast.v, fast.force) if fast.ended == Ended.SOLVED else None
+        return self._newton_of_many(v, features)
+
+    def _newton_of_many(
+        self, v: FloatArray, features: list[Feature]
+    ) -> tuple[FloatArray, FloatArray] | None:
+        """The same where there are more forces than needed, or hands of one level side by side: of
+        all solutions the nearest one.
+        """
         chosen = self._features.chosen(features)
         gaps = self._features.gaps_of(v, chosen)
         force: FloatArray = np.asarray(
@@ -237,7 +230,7 @@ class CriticalHands:
         )
         m = len(features)
         matrix = np.zeros((4 + m, 4 + m))
-        for _ in range(_STEPS):
+        for _ in range(STEPS):
             matrix[:4, :4] = self._features.curvature(chosen, gaps, force)
             matrix[:4, 4:] = -gaps.slope.T
             matrix[4:, :4] = gaps.slope
@@ -252,27 +245,27 @@ class CriticalHands:
             if longest < 1e-14:
                 break
         off = slope_of_half_square(v) - gaps.slope.T @ force
-        if float(np.abs(off).max()) > _BALANCED * np.hypot(v[2], v[3]):
+        if float(np.abs(off).max()) > BALANCED * np.hypot(v[2], v[3]):
             return None
-        return (v, force) if float(np.abs(gaps.value).max()) <= _TOUCHES else None
+        return (v, force) if float(np.abs(gaps.value).max()) <= TOUCHES else None
 
     def _changed(
         self, v: FloatArray, features: list[Feature], force: FloatArray
     ) -> list[Feature] | None:
         """The set of features that the solution asks for instead, or None if it is right."""
         for k, f in enumerate(features):
-            other = self._features.beside(v, f, _TOUCHES)
+            other = self._features.beside(v, f, TOUCHES)
             if other is not None:
                 if not self._features.exists(other):
                     return features[:k] + features[k + 1 :]
                 return [*(g for g in features if g not in (f, other)), other]
-        deepest = self._features.deepest(v, _TOUCHES)
+        deepest = self._features.deepest(v, TOUCHES)
         if deepest is not None and deepest not in features:
             return [*features, deepest]
         weak = int(np.argmin(force))
         if pushes(-force)[weak]:
             slopes = self._features.gaps(v, features).slope.T
-            if balanced(slopes, slope_of_half_square(v), _BALANCED) is not None:
+            if balanced(slopes, slope_of_half_square(v), BALANCED) is not None:
                 return None  # more are touched than are needed
             return features[:weak] + features[weak + 1 :]
         return None
@@ -281,7 +274,7 @@ class CriticalHands:
         """What the hand is, if its forces balance pushing and it is of the wanted kind."""
         chosen = self._features.chosen(features)
         gaps = self._features.gaps_of(v, chosen)
-        force = balanced(gaps.slope.T, slope_of_half_square(v), _BALANCED)
+        force = balanced(gaps.slope.T, slope_of_half_square(v), BALANCED)
         if force is None:
             return None
         loaded = pushes(force)
@@ -303,5 +296,5 @@ class CriticalHands:
 
     def _is_blocked(self, v: FloatArray, way: FloatArray) -> bool:
         """Whether a feature that is touched, pushing or not, is in the way on one side or other."""
-        near = self._features.near(v, 10.0 * _TOUCHES)
+        near = self._features.near(v, 10.0 * TOUCHES)
         return bool(np.abs(self._features.gaps(v, near).slope @ way).max() > _ASLANT)

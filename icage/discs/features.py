@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.arrays import BoolArray, FloatArray
+from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.discs.balance import finger_maps
 from icage.discs.edges import Edges
+from icage.discs.kernels.features import Sides, near_features
 from icage.geometry.exterior import without_straight_vertices
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
@@ -63,9 +64,12 @@ class Features:
         ring = without_straight_vertices(outline.vertices, self.size)
         self._origin = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
         self._ring = np.ascontiguousarray((ring - self._origin) / self.size)
-        self._edges = Edges.of(self._ring)
+        self._edges = edges = Edges.of(self._ring)
         self._hand = hand
         self._maps = finger_maps(hand)
+        self.sides = Sides(
+            edges.start, edges.length, edges.way, edges.out, edges.convex, self._maps, self.radius
+        )
 
     # ------------------------------------------------------------------ hands
 
@@ -97,34 +101,19 @@ class Features:
 
     # ------------------------------------------------------------------ which
 
-    def touched(self, at: FloatArray, reach: float, beyond: float = 0.0) -> BoolArray:
-        """Which features fingers at (k, fingers, 2) nearly touch, (k, fingers x 2 edges).
-
-        Those with a gap of at most ``reach``, and ``beyond`` past their ends. Of each finger first
-        the edges, then the vertices.
-        """
-        edges = self._edges
-        x, y = at[..., 0, None] - edges.start[:, 0], at[..., 1, None] - edges.start[:, 1]
-        along = x * edges.way[:, 0] + y * edges.way[:, 1]
-        past_end = along - edges.length
-        gap = x * edges.out[:, 0] + y * edges.out[:, 1] - self.radius
-        edge = (np.abs(gap) <= reach) & (along >= -beyond) & (past_end <= beyond)
-        arc = (np.abs(np.hypot(x, y) - self.radius) <= reach) & edges.convex & (along <= beyond)
-        arc[..., 1:] &= past_end[..., :-1] >= -beyond
-        arc[..., 0] &= past_end[..., -1] >= -beyond
-        return np.concatenate([edge, arc], axis=2).reshape(len(at), -1)
-
-    def named(self, touched: BoolArray) -> list[Feature]:
-        """The features of a row of ``touched``."""
+    def named(self, which: IntArray) -> list[Feature]:
+        """The features with these numbers (m,), as the kernels have them."""
         n = len(self._ring)
-        return [
-            Feature(k // (2 * n), k % n, bool(k % (2 * n) >= n))
-            for k in np.flatnonzero(touched).tolist()
-        ]
+        return [Feature(k // (2 * n), k % n, bool(k % (2 * n) >= n)) for k in which.tolist()]
+
+    def numbers(self, features: list[Feature]) -> IntArray:
+        """The numbers (m,) of features."""
+        n = len(self._ring)
+        return np.array([2 * n * f.finger + n * f.is_arc + f.number for f in features], np.int64)
 
     def near(self, v: FloatArray, reach: float) -> list[Feature]:
         """Features within ``reach`` of being touched, of all fingers."""
-        return self.named(self.touched(self.fingers(v)[None], reach, reach)[0])
+        return self.named(near_features(self.sides, v, reach, reach))
 
     def beside(self, v: FloatArray, feature: Feature, slack: float) -> Feature | None:
         """The next feature along the curve, if a finger is more than ``slack`` past its end.
@@ -203,21 +192,6 @@ class Features:
             bend = (force / (self.radius + gaps.value))[chosen.is_arc]
             hessian -= (rows.T * bend) @ rows
         return hessian
-
-    def half_planes(self, v: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
-        """Slopes (m, 4) and gaps (m,) of the free half planes around the fingers of a hand.
-
-        One for each nearest point of an edge that a finger is within ``reach`` of touching.
-        """
-        slopes: list[FloatArray] = []
-        gaps: list[FloatArray] = []
-        for m in self._maps:
-            off, _ = self._from_edges(m @ v)
-            far = np.hypot(off[:, 0], off[:, 1])
-            use = np.flatnonzero((far < self.radius + reach) & (far > 1e-9))
-            slopes.append(off[use] / far[use, None] @ m)
-            gaps.append(far[use] - self.radius)
-        return np.concatenate(slopes), np.concatenate(gaps)
 
     def _from_edges(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
         """To a point from the nearest points of all edges (n, 2), and where these are on them."""

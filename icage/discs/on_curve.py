@@ -18,7 +18,8 @@ import numpy as np
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, not_a_cage
-from icage.discs.brackets import local_cage_on, plan_by_resolutions
+from icage.discs.arc_stops import RESTING
+from icage.discs.brackets import local_cage_on, plan_by_resolutions, quadrant_chord
 from icage.discs.critical import Critical, CriticalHands
 from icage.discs.curve import TrueCurve
 from icage.discs.hidden import hidden_minima
@@ -239,9 +240,16 @@ class _Polygons:
         )
 
     def _local_cage(self, polygon: Outline, segments: int) -> LocalCage | None:
-        arc = self.curve.radius if len(self.curve.on_arcs(self.true)) else 0.0
-        hand = self.critical.hand
-        return local_cage_on(polygon, hand, self.true, segments, arc, self.method)
+        """What is round the target, which rests on short chords or else anywhere on long ones."""
+        chords = [0.0]
+        if len(self.curve.on_arcs(self.true)):
+            radius = self.curve.radius
+            chords = [2.0 * RESTING * radius, quadrant_chord(radius, segments)]
+        for chord in chords:
+            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method)
+            if found is not None:
+                return found
+        return None
 
     def _outer_polygon(self, segments: int, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""

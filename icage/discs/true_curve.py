@@ -14,6 +14,7 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from icage.discs.balance import balanced, finger_maps, pushes, pushing, slope_of_half_square
 from icage.errors import GraspError, HandError
+from icage.geometry.least_hand import least_hand
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
@@ -34,6 +35,12 @@ true curve is nowhere further from a polygon than a small part of the radius."""
 
 _INSIDE = 1e-9
 """[diameter] A finger may be this far inside a feature; one this near to it touches it."""
+
+_ROUNDS = 200
+"""Times that the features are taken as half spaces."""
+
+_STANDS = 1e-14
+"""[diameter] A hand that moves by less has come to rest."""
 
 _BALANCED = 1e-7
 """[1] Residual of the forces in a minimum, over the size of the hand."""
@@ -74,13 +81,12 @@ def refine(
 ) -> FloatArray | None:
     """Contacts (3, 2) of the local minimum on the true curve next to the given ones, or None.
 
-    Sequential quadratic programming, then Newton steps on the conditions of the active features.
+    The least hand among the half spaces that the features leave where it stands, over and over
+    (sequential quadratic programming), then Newton steps on the conditions of the active features.
     The features are taken as whole lines and circles: a hand that has slid off the end of one and
     closed behind it, or stands in the object there, is no minimum. None then, as where there is
     none. A finger may be free in the minimum found.
     """
-    from scipy.optimize import minimize  # only now: scipy is slow to load
-
     size = outline.diameter
     features = features_near(outline, radius, contacts)
     if len({f.finger for f in features}) < 2:
@@ -89,12 +95,7 @@ def refine(
     side = contacts[1] - contacts[0]
     start = np.concatenate([contacts[0] - origin, side]) / size
     system = _System(features, hand, radius / size, origin, size)
-    answer = minimize(
-        _half_square, start, jac=slope_of_half_square, method="SLSQP",
-        options={"ftol": 1e-15, "maxiter": 200},
-        constraints={"type": "ineq", "fun": system.gaps, "jac": system.slopes},
-    )  # fmt: skip
-    found = np.asarray(answer.x)
+    found = system.closed(start)
     # what only comes near without carrying force is at times no part of the minimum; and contacts
     # that are one already, however flat it is, are not to be lost
     polished = (system.polished(found, loaded=loaded) for loaded in (False, True))
@@ -198,11 +199,6 @@ def _all_touch(outline: Outline, radius: float, contacts: FloatArray) -> bool:
     return bool(np.abs(depth).max() <= CONTACT_OFF * outline.diameter)
 
 
-def _half_square(v: FloatArray) -> float:
-    """1/2 |w|^2, whose minimum is that of sigma."""
-    return 0.5 * float(v[2:] @ v[2:])
-
-
 class _System:
     """Gaps of the features as functions of v = (d_x, d_y, w_x, w_y) / size about an origin."""
 
@@ -233,6 +229,19 @@ class _System:
     def slopes(self, v: FloatArray) -> FloatArray:
         """Derivative of the gaps, (features, 4)."""
         return np.einsum("ki,kij->kj", self._normals(v)[0], self._maps)
+
+    def closed(self, v: FloatArray) -> FloatArray:
+        """Where closing comes to rest, or nearly so."""
+        for _ in range(_ROUNDS):
+            slopes = self.slopes(v)
+            least = least_hand(slopes, (slopes * v).sum(axis=1) - self.gaps(v), v[:2])
+            if least is None:
+                break
+            step = float(np.abs(least - v).max())
+            v = least
+            if step < _STANDS:
+                break
+        return v
 
     def _curvature(self, v: FloatArray, force: FloatArray, rows: IntArray) -> FloatArray:
         """Hessian of 1/2 |w|^2 - sum force x gap over the active features, (4, 4)."""

@@ -16,19 +16,27 @@ _KINDS = {dict: "an object", list: "a list", str: "a string", bool: "true or fal
 
 
 def parse_json(content: bytes, where: str) -> object:
-    """The JSON value in UTF-8 bytes; NaN and Infinity are no JSON.
+    """The JSON value in UTF-8 bytes; NaN and Infinity are no JSON, and a key stands once.
 
     Raises
     ------
     CaseError:
-        Not text, not JSON (says the line and column), nested too deeply.
+        Not text, not JSON (says the line and column), nested too deeply, a key given twice.
     """
 
     def refuse(constant: str) -> NoReturn:
         raise CaseError(f"{where}: {constant} is not a JSON number; finite numbers are needed")
 
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            names = [name for name, _ in pairs]
+            twice = next(name for name in names if names.count(name) > 1)
+            raise CaseError(f"{where}: key {twice!r} is given twice in one object")
+        return found
+
     try:
-        return json.loads(decode(content, where), parse_constant=refuse)
+        return json.loads(decode(content, where), parse_constant=refuse, object_pairs_hook=once)
     except FormatError as error:
         raise CaseError(str(error)) from error
     except json.JSONDecodeError as error:

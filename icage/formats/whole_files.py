@@ -1,4 +1,4 @@
-"""Output files appear whole or not at all: written beside their place, then moved there.
+"""Output files appear whole or not at all: written in a staging folder, then moved to their place.
 
 Only regular files are replaced. A link is followed; a device or a pipe (``/dev/null``, a FIFO,
 ``>(...)``) is written into, once everything is there.
@@ -7,15 +7,18 @@ Only regular files are replaced. A link is followed; a device or a pipe (``/dev/
 from __future__ import annotations
 
 import os
-import re
-import secrets
 import stat
 import tempfile
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 from icage.errors import OutputError
+from icage.staging import staging
+
+_PROBE: Final = 1 << 16
+"""[byte] Written for a moment where output is to be: a full disk still takes empty files."""
 
 
 @contextmanager
@@ -76,39 +79,33 @@ def check_writable(path: Path) -> None:
 
 
 def check_folder_writable(folder: Path) -> None:
-    """Try whether files can be made in a folder: some, as /proc, look as if and refuse.
+    """Try whether files can be made in a folder, and filled.
+
+    Some, as /proc, look as if and refuse; a full disk takes empty ones.
 
     Raises
     ------
     OSError:
         They cannot.
     """
-    tempfile.TemporaryFile(dir=folder).close()
-
-
-def leftovers(path: Path) -> Iterator[Path]:
-    """What processes that were killed while they wrote ``path`` have left beside it.
-
-    So has one that is writing it now: ask where nobody can be.
-    """
-    name = re.compile(rf"\.{re.escape(path.stem[:40])}\.[0-9a-f]{{8}}{re.escape(path.suffix)}")
-    return (part for part in path.parent.iterdir() if name.fullmatch(part.name))
+    with tempfile.TemporaryFile(dir=folder) as probe:
+        probe.write(bytes(_PROBE))
+        probe.flush()
+        os.fsync(probe.fileno())
 
 
 @contextmanager
 def _beside(path: Path) -> Generator[Path]:
-    part = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(4)}{path.suffix}")
-    try:
+    with staging(path.parent) as place:
+        part = place.new / path.name
         yield part
         part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 @contextmanager
 def _in_a_stream(path: Path) -> Generator[Path]:
-    with tempfile.TemporaryDirectory(prefix="icage-") as folder:
-        part = Path(folder) / path.name
+    with staging(Path(tempfile.gettempdir())) as place:
+        part = place.new / path.name
         yield part
         content = part.read_bytes()
     with path.open("wb") as stream:

@@ -20,6 +20,7 @@ from icage.errors import InputError
 from icage.friction.ends import JamEnds, jam_ends
 from icage.friction.jam import Jam, JamTolerance
 from icage.friction.jam_search import JamSearch
+from icage.library_faults import geometry_told
 from icage.tolerance import LEVEL
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ class FrictionLevel:
         return jam_ends(self._cage, self)
 
 
+@geometry_told()
 def friction_levels(
     cage: Cage, mus: Iterable[float], tolerance: JamTolerance | None = None
 ) -> tuple[FrictionLevel, ...]:

@@ -6,12 +6,13 @@ is convex and the edges are half planes of (d, w), so closing the hand there end
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.geometry.contact_types import feet
+from icage.geometry.least_hand import least_hand
 from icage.hand import HandShape
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
@@ -22,17 +23,11 @@ FEASIBLE: Final = 1e-6
 _ASIDE: Final = 1e-6
 """[1] A hand that comes nearer to an edge by no more than this share of its way moves along it."""
 
-_FINEST: Final = 1e-15
-"""[1] The solver goes on until the opening, of size one, changes in its last place only."""
-
 _SHUT: Final = 1e-3
 """[diameter] A least opening below this holds nothing: no edges are in its way."""
 
 _ROUNDS: Final = 12
 """Edges that a finger may roll over, and a few more."""
-
-_AT_MINIMUM: Final = (0, 8)
-"""SLSQP has converged, or can go no lower for rounding."""
 
 
 class NoOpeningError(ValueError):
@@ -59,10 +54,8 @@ def least_opening(
     Raises
     ------
     NoOpeningError:
-        The search did not converge.
+        There is none, or it is shut.
     """
-    from scipy.optimize import minimize  # only now: scipy is slow to load
-
     size, middle = outline.diameter, near.mean(axis=0)
     a = outline.vertices
     out, _ = _normals(outline)
@@ -71,32 +64,12 @@ def least_opening(
     matrix = np.column_stack([x, y, x * z.real + y * z.imag, y * z.real - x * z.imag])
     level = (radius + (out[edge] * (a[edge] - middle)).sum(axis=1)) / size
     d = complex(*(near[0] - middle)) / size
-    w = complex(*(near[1] - near[0])) / size
-    grown = 1.0 + 4.0 * radius / (size * abs(w))
-
-    def opening(v: FloatArray) -> float:
-        return float(v[2] ** 2 + v[3] ** 2)
-
-    def slope(v: FloatArray) -> FloatArray:
-        return np.array([0.0, 0.0, 2.0 * v[2], 2.0 * v[3]])
-
-    def outside(v: FloatArray) -> FloatArray:
-        return matrix @ v - level
-
-    def turned(v: FloatArray) -> FloatArray:
-        return matrix
-
-    found: Any = minimize(
-        opening,
-        np.array([d.real, d.imag, w.real, w.imag]) * grown,
-        jac=slope,
-        constraints={"type": "ineq", "fun": outside, "jac": turned},
-        method="SLSQP",
-        options={"maxiter": 200, "ftol": _FINEST},
-    )
-    if found.status not in _AT_MINIMUM or (matrix @ found.x - level).min() < -FEASIBLE:
-        raise NoOpeningError(str(found.message))
-    x, y, u, v = found.x.tolist()
+    found = least_hand(matrix, level, np.array([d.real, d.imag]))
+    if found is None or ((matrix * found).sum(axis=1) - level).min() < -FEASIBLE:
+        raise NoOpeningError("no hand of this shape stands outside all of these edges")
+    if not np.hypot(found[2], found[3]) > FEASIBLE:
+        raise NoOpeningError("these edges let the hand close to a point")
+    x, y, u, v = found.tolist()
     places = (complex(x, y) + complex(u, v) * hand.z) * size
     return np.column_stack([places.real, places.imag]) + middle
 
@@ -189,7 +162,7 @@ def sliding_room(
     rooms = np.concatenate([np.where(pressed, 0.0, slack), foot, length[edge][pressed] - foot])
 
     def far(way: FloatArray) -> float:
-        pace = -walls @ way
+        pace = -(walls * way).sum(axis=1)
         stops = pace > _ASIDE
         return max(float((rooms[stops] / pace[stops]).min(initial=np.inf)), 0.0)
 

@@ -13,8 +13,10 @@ from icage.grasps.crew import Progress
 from icage.grasps.planned import PlannedGrasps, planned_grasps
 from icage.grasps.search import ranked_grasps
 from icage.grasps.wanted import Wanted
+from icage.library_faults import geometry_told
 
 
+@geometry_told()
 def best_of_case(
     case: Case,
     top: int,

@@ -3,7 +3,8 @@
 The first process that meets kernels without machine code starts it and goes on: the answer does
 not wait. It is one at a time (a lock on a file, gone with its process), of low priority, has no
 terminal and nobody's standard output, ends by itself, and writes a list of the kernels whose
-machine code lies in numba's cache; nothing is wrong if it is killed. ``ICAGE_COMPILE_BEHIND=0``
+machine code lies in numba's cache; nothing is wrong if it is killed. It works on behind a process
+that has ended well; one that was killed or interrupted takes it along. ``ICAGE_COMPILE_BEHIND=0``
 starts none. [docs/decisions/0009-cold-start.md]
 """
 
@@ -17,6 +18,7 @@ from contextlib import suppress
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Thread
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING, Any, Final
 
@@ -41,6 +43,9 @@ MODULE: Final = "icage.compile_kernels"
 
 SECONDS: Final = 900
 """[s] After which it is ended, whatever it does."""
+
+_GO_ON: Final = b"go on"
+"""What a process that ends well tells the one behind it."""
 
 _LOOK: Final = 0.1
 """[s] What was known of the other process is taken as true for so long."""
@@ -81,7 +86,7 @@ def start(*, awaited: bool = False) -> None:
     try:
         _seen.child = subprocess.Popen(
             [sys.executable, "-P", "-m", MODULE, "--awaited" if awaited else "--behind"],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             start_new_session=True, env=environment, cwd=Path(__file__).parent,
         )  # fmt: skip
     except OSError:  # no room for another process: this one compiles
@@ -91,9 +96,31 @@ def start(*, awaited: bool = False) -> None:
 
 
 def _leave(child: subprocess.Popen[bytes]) -> None:
-    """It is meant to outlive us, of which Python would warn."""
+    """It is meant to outlive us, of which Python would warn; told so, or it ends with us."""
+    if child.stdin is not None:
+        with suppress(OSError, ValueError):  # it has ended, or was abandoned
+            child.stdin.write(_GO_ON)
+            child.stdin.close()
     if child.returncode is None:
         child.returncode = 0
+
+
+def abandon() -> None:
+    """The other process, if this one has started it, ends now: this one was told to end."""
+    child = _seen.child
+    if child is not None and child.stdin is not None:
+        with suppress(OSError):
+            child.stdin.close()
+
+
+def follow() -> None:
+    """In the other process: it ends with the one that started it, unless that lets it go on."""
+
+    def wait() -> None:
+        if os.read(0, len(_GO_ON)) != _GO_ON:
+            os._exit(1)
+
+    Thread(target=wait, daemon=True).start()
 
 
 def is_ready(name: str) -> bool:

@@ -138,7 +138,10 @@ def _depth(ring, x, y):
         ay = ring[a, 1]
         sx = ring[b, 0] - ax
         sy = ring[b, 1] - ay
-        t = ((x - ax) * sx + (y - ay) * sy) / (sx * sx + sy * sy)
+        square = sx * sx + sy * sy
+        if square == 0.0:  # two vertices that a shift of the ring has made one
+            continue
+        t = ((x - ax) * sx + (y - ay) * sy) / square
         t = min(1.0, max(0.0, t))
         gx = x - ax - t * sx
         gy = y - ay - t * sy

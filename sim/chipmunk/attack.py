@@ -29,7 +29,7 @@ def random_attack_second(
     Raises
     ------
     InputError:
-        pymunk is not installed, the scene has friction or a linkage that yields, or an opening
+        pymunk is not installed, the scene has a linkage that yields, or an opening
         is not a positive number.
     """
     openings = np.array(openings, dtype=np.float64)

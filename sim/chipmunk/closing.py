@@ -22,7 +22,7 @@ def close_many_second(
     Raises
     ------
     InputError:
-        pymunk is not installed, or the scene has friction or a linkage that yields.
+        pymunk is not installed, or the scene has a linkage that yields.
     """
     rows = np.asarray(starts, dtype=np.float64).reshape(-1, 4)
     begin = scene.start_positions(rows)

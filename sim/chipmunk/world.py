@@ -2,7 +2,7 @@
 
 Frames, units and numbers are those of the ``Scene`` it is made from: the palm's frame, diameter 1,
 mass 1, moment ``gyration_squared``, a viscous table, the same true outline in convex pieces, discs
-of the same radius, no friction. Chipmunk has no slides that are geared to one another, but it has
+of the same radius. Chipmunk has no slides that are geared to one another, but it has
 turning bodies that are: so finger k is the tip of an *arm* of length R L_k,
 
     p_k(a) = R L_k (sin a u_k - (1 - cos a) m_k),    sigma = R sin a,
@@ -86,8 +86,8 @@ class World:
 
     def __post_init__(self) -> None:
         config, kinematics = self.scene.config, self.scene.kinematics
-        if config.friction > 0.0 or config.linkage_compliance > 0.0:
-            raise InputError("the second engine has no friction and only the rigid linkage")
+        if config.linkage_compliance > 0.0:
+            raise InputError("the second engine has only the rigid linkage")
         engine = chipmunk()
         put = object.__setattr__
         put(self, "_reach", (ARM * kinematics.lengths).tolist())
@@ -162,7 +162,7 @@ def _space(engine: Any, scene: Scene, config: SecondConfig) -> Space:
 def _arm(engine: Any, space: Space, scene: Scene, k: int) -> Body:
     """Tip mass such that the common decay time of the space gives the finger its damping.
 
-    The disc is larger by ``TOUCHING``: what the engine holds, ``sim.closing.step_check`` then sees
+    The disc is larger by ``TOUCHING``: what the engine holds, ``sim.closing.look`` then sees
     touching.
     """
     config, kinematics = scene.config, scene.kinematics
@@ -174,6 +174,7 @@ def _arm(engine: Any, space: Space, scene: Scene, k: int) -> Body:
     radius = scene.finger_radius / scene.object.diameter + TOUCHING
     tip = engine.Circle(arm, radius, (reach * y, -reach * x))
     tip.filter = engine.ShapeFilter(group=_FINGERS)
+    tip.friction = math.sqrt(config.friction)  # the engine multiplies those of two shapes
     space.add(arm, tip)
     return arm
 
@@ -182,7 +183,9 @@ def _body(engine: Any, space: Space, scene: Scene) -> Body:
     body = engine.Body(1.0, scene.object.gyration_squared)
     space.add(body)
     for piece in scene.object.pieces:
-        space.add(engine.Poly(body, [tuple(corner) for corner in piece.tolist()]))
+        solid = engine.Poly(body, [tuple(corner) for corner in piece.tolist()])
+        solid.friction = math.sqrt(scene.config.friction)
+        space.add(solid)
     return body
 
 

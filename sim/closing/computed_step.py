@@ -121,19 +121,32 @@ def go_on(
     Updated in place, a row each for N closings: ``state`` (N, 3, 6) = positions, velocities,
     accelerations, and the largest force ``peak`` (N,). One that cannot go all the way is not begun.
     """
-    went = np.ones(len(ids), dtype=np.bool_)
+    went = np.empty(len(ids), dtype=np.bool_)
     ahead = np.empty((3, 6))
     for n in range(len(ids)):
-        i = ids[n]
-        _copy(state[i], ahead)
-        for _ in range(stride):
-            if not _step(plant, room, most, ahead):
-                went[n] = False
-                break
-        if went[n]:
-            _copy(ahead, state[i])
-            peak[i] = max(peak[i], max(room.total[0], room.total[1], room.total[2]))
+        went[n] = goes_on(ids[n], plant, room, most, stride, ahead, state, peak)
     return went
+
+
+@njit(cache=True, inline="always")
+def goes_on(
+    i: int,
+    plant: Plant,
+    room: Room,
+    most: int,
+    stride: int,
+    ahead: FloatArray,
+    state: FloatArray,
+    peak: FloatArray,
+) -> bool:  # pragma: no cover - compiled
+    """The same for one closing, with ``ahead`` (3, 6) to compute in."""
+    _copy(state[i], ahead)
+    for _ in range(stride):
+        if not _step(plant, room, most, ahead):
+            return False
+    _copy(ahead, state[i])
+    peak[i] = max(peak[i], max(room.total[0], room.total[1], room.total[2]))
+    return True
 
 
 @njit(cache=True)

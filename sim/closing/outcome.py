@@ -26,7 +26,7 @@ class ClosingOutcome:
     Attributes
     ----------
     ending:
-        One of ``sim.closing.step_check.ENDINGS``.
+        One of ``sim.closing.look.ENDINGS``.
     steps:
         Steps taken, each of ``SimConfig.time_step``, after the free travel
         (``sim.closing.approach``).
@@ -58,7 +58,7 @@ class ClosingOutcome:
 class ClosingOutcomes:
     """N closings: the arrays of ``ClosingOutcome``, with placements (N, 4) = x, y, theta, sigma.
 
-    ``ending`` holds codes into ``sim.closing.step_check.ENDINGS``. Rows of diverged closings hold
+    ``ending`` holds codes into ``sim.closing.look.ENDINGS``. Rows of diverged closings hold
     whatever the engine last had; nothing in them means anything.
     """
 

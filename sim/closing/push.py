@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import BoolArray, FloatArray
-from sim.closing.computed_step import STIFFEST, empty_room, go_on
+from sim.closing.computed_step import STIFFEST, empty_room
 from sim.closing.plant import plant_of
+from sim.closing.push_loop import close_on
 from sim.closing.step_check import RUNNING, StepCheck
 from sim.world.scene import Scene
 
@@ -66,7 +67,7 @@ def compile_steps(scene: Scene) -> None:
     nobody, state = np.zeros(0, dtype=np.int64), np.zeros((2, 3, 6))
     check = StepCheck.over(scene, state[:, 0])
     most = scene.config.computed_contacts
-    go_on(nobody, plant_of(scene), empty_room(), most, check.stride, state, np.zeros(2))
+    close_on(nobody, plant_of(scene), empty_room(), most, state, np.zeros(2), *check.told)
     check.observe(nobody, state[:, 0], state[:, 1])
 
 
@@ -83,9 +84,5 @@ def _push(
     """Update state (N, 3, 6) and peak force (N,) of the closings ``rows``, as far as they go."""
     plant, room, most = plant_of(scene), empty_room(), scene.config.computed_contacts
     running = np.flatnonzero(rows & np.isfinite(state[:, 0]).all(axis=1))
-    going = int(RUNNING)  # compared with at every look: a plain number is faster
-    running = running[check.ending[running] == going]
-    while len(running):
-        running = running[go_on(running, plant, room, most, check.stride, state, peak)]
-        check.observe(running, state[:, 0], state[:, 1])
-        running = running[check.ending[running] == going]
+    running = running[check.ending[running] == RUNNING]
+    close_on(running, plant, room, most, state, peak, *check.told)

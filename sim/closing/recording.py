@@ -38,7 +38,7 @@ class Recording:
     finger_forces:
         (F, 3), [drive_force], size of the contact force on each finger.
     ending:
-        One of ``sim.closing.step_check.ENDINGS``; "running" if ``max_frames`` cut it off.
+        One of ``sim.closing.look.ENDINGS``; "running" if ``max_frames`` cut it off.
     """
 
     time: FloatArray

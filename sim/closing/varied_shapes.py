@@ -88,9 +88,10 @@ class _Rest:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """Trials of one scene inside a batch: their places in the batch and among all."""
+    """Trials of one scene inside a batch: the first's place there, and the places among all."""
 
     scene: Scene
+    first: int
     rows: IntArray
     check: StepCheck
 
@@ -178,8 +179,8 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
     rough = np.concatenate([held_up[rows] for _, rows in lot])
     pace = np.concatenate([worlds.speed[rows] for _, rows in lot])
     rest = _Rest(len(rough), DRIFT * np.minimum(pace, 1.0)) if rough.any() else None
-    running = np.flatnonzero(np.concatenate([part.check.ending for part in parts]) == RUNNING)
-    while len(running):
+    left = [part.check.running + part.first for part in parts]
+    while len(running := np.concatenate(left) if len(left) > 1 else left[0]):
         lost: Any = ()
         try:
             batch.step(running.astype(np.int32), nstep=LOOK_EVERY)
@@ -190,26 +191,24 @@ def _close_lot(lot: _Lot, starts: FloatArray, worlds: Worlds, threads: int) -> V
             bad = np.union1d(bad, lost).astype(np.int64)
         if rest is not None:
             rest.look(running[rough[running]], positions, velocities)
-        left: list[IntArray] = []
-        first = 0
-        for part in parts:
-            last = first + len(part.rows)
-            left.append(_look(part, first, last, positions, velocities, rest, bad))
-            first = last
-        running = np.concatenate(left) if len(left) > 1 else left[0]
+        left = [
+            _look(part, mine, positions, velocities, rest, bad)
+            for part, mine in zip(parts, left, strict=True)
+        ]
     return _read_off(parts, starts, batch, peak)
 
 
 def _look(
-    part: _Part, first: int, last: int, positions: FloatArray, velocities: FloatArray,
+    part: _Part, running: IntArray, positions: FloatArray, velocities: FloatArray,
     rest: _Rest | None, bad: IntArray,
 ) -> IntArray:  # fmt: skip
-    """Observe the trials of one scene, at first..last of the batch; those still running."""
-    check = part.check
-    running = check.running
+    """Observe the trials of one scene that are running, and tell which still are."""
+    check, first, last = part.check, part.first, part.first + len(part.rows)
     if not len(running):
         return running
-    check.observe(running, positions[first:last], velocities[first:last])
+    left = check.observe(running - first, positions[first:last], velocities[first:last])
+    if rest is None and not len(bad):
+        return left + first
     if rest is not None:
         still = rest.found[first:last] & (check.ending == RUNNING) & (check.touches >= 1)
         check.ending[still] = SETTLED
@@ -248,7 +247,7 @@ def _opened(
         pushed = push(scene, free, check, usual[rows])
         begin[here], speed[here] = pushed.positions, pushed.velocities
         push_on[here], peak[here] = pushed.accelerations, pushed.peak_force
-        parts.append(_Part(scene, rows, check))
+        parts.append(_Part(scene, first, rows, check))
         first += len(rows)
     if models:
         batch.set_models(models)

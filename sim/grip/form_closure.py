@@ -84,10 +84,11 @@ def touches(scene: Scene, qpos: FloatArray) -> Touches:
     for _ in range(_SETTLE):
         mj.mj_step(scene.model, data)
     mj.mj_forward(scene.model, data)
-    return _joined(scene.model, data, scene.config.drive_force)
+    return joined(scene.model, data, scene.config.drive_force)
 
 
-def _joined(model: MjModel, data: MjData, unit: float) -> Touches:
+def joined(model: MjModel, data: MjData, unit: float) -> Touches:
+    """Contacts of a forwarded state, those of one finger with one normal as one; force in unit."""
     tips = {mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, f"finger_{k + 1}_tip"): k for k in range(3)}
     found: list[tuple[int, FloatArray, FloatArray, float]] = []
     wrench = np.zeros(6)

@@ -78,6 +78,11 @@ class SimConfig:
     """[1] Coulomb coefficient between fingers and object. With 0 contacts have no tangential
     rows at all (condim 1): the planner's statements are about frictionless closing."""
 
+    impratio: float = 1.0
+    """[1] How much stiffer friction is than the normal of a contact. Sticking is regularized: a
+    jammed object creeps, on a wedge at 4e-5 diameters / s with 1 and at 1 / ``impratio`` of that
+    with more. It moves no coefficient at which a hand begins to stick (``sim.grip.stick``)."""
+
     still_speed: float = 1e-5
     """[diameter / s, rad / s] Slower than this is still. The tail of a three-edge grasp decays with
     a time constant of about 0.05 s, so what is left is below 1e-6."""
@@ -88,7 +93,7 @@ class SimConfig:
     remains: float = 5e-6
     """[diameter, rad] Without friction a closing is also at rest when its speed falls exponentially
     and what is left of the way, speed times time constant, is below this
-    (``sim.closing.step_check``): a twentieth of what counts as the target. 0: wait for
+    (``sim.closing.look``): a twentieth of what counts as the target. 0: wait for
     ``still_speed``."""
 
     computed_contacts: int = 3
@@ -104,7 +109,7 @@ class SimConfig:
     """[diameter] A hand whose longest side is shorter than this has shut on nothing: escaped."""
 
     def __post_init__(self) -> None:
-        positive = ("drive_force", "finger_damping", "object_damping", "max_time")
+        positive = ("drive_force", "finger_damping", "object_damping", "impratio", "max_time")
         for name in ("time_step", *positive):
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:

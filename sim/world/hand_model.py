@@ -45,7 +45,7 @@ length for one without stiffness, and the first push would throw the fingers far
 
 _COLLISION_TOLERANCE = 1e-10
 """[diameter] To which the engine finds the nearest points of two convex pieces: a ten-thousandth of
-``TOUCHING`` in ``sim.closing.step_check``; its default of 1e-6 would be as coarse as that."""
+``TOUCHING`` in ``sim.closing.look``; its default of 1e-6 would be as coarse as that."""
 
 _CABLE_DEPTH, _PALM_DEPTH = -0.09, -0.13
 """[diameter] Where the drawn parts lie: below the object, which is seen from above."""
@@ -191,6 +191,7 @@ def _set_options(spec: MjSpec, config: SimConfig) -> None:
     option.solver = mj.mjtSolver.mjSOL_NEWTON
     option.jacobian = mj.mjtJacobian.mjJAC_DENSE
     option.cone = mj.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = config.impratio
     option.iterations = config.solver_iterations
     option.tolerance = config.solver_tolerance
     option.ccd_tolerance = _COLLISION_TOLERANCE

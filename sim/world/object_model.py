@@ -49,7 +49,7 @@ class NormalObject:
 
     def __post_init__(self) -> None:
         centre, diameter = self.outline.centroid, self.outline.diameter
-        normal = Outline((self.outline.vertices - centre) / diameter)
+        normal = Outline.computed((self.outline.vertices - centre) / diameter)
         object.__setattr__(self, "centre", read_only(centre))
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "vertices", normal.vertices)

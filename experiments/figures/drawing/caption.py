@@ -13,6 +13,7 @@ from experiments.figures.drawing.numbers import significant
 from experiments.figures.drawing.palette import FINGERS, INK, QUIET_INK
 from experiments.figures.drawing.shapes import scale_bar_length
 from experiments.figures.drawing.sheet import Sheet
+from experiments.io.one_line import in_figure
 from icage.cage import Cage
 
 ROW = 14.0
@@ -99,13 +100,13 @@ def draw_caption(sheet: Sheet, cage: Cage, lines: tuple[Line, ...], name: str, u
         words += f",  disc fingers of radius {cage.finger_radius:.4g} {unit}"
     about = sheet.axes.text(sheet.left, top, words, fontsize=8.5, color=QUIET_INK, va="baseline")
     title = sheet.axes.text(
-        sheet.left, top, name, fontsize=11, fontweight="bold", color=INK, va="baseline"
+        sheet.left, top, in_figure(name), fontsize=11, fontweight="bold", color=INK, va="baseline"
     )
     room = sheet.right - sheet.left - _width(about) - 10.0
     for kept in range(len(name) - 1, 0, -1):
         if _width(title) <= room:
             break
-        title.set_text(f"{name[:kept]}…")
+        title.set_text(f"{in_figure(name[:kept])}…")
     about.set_x(sheet.left + _width(title) + 10.0)
     for k, line in enumerate(lines):
         _draw_line(sheet, line, top - 6.0 - ROW * (k + 1))

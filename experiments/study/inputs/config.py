@@ -7,13 +7,13 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 from experiments.io.parsed_file import parsed_file
-from experiments.study.inputs.distributions import LARGEST, Distribution
+from experiments.study.inputs.distributions import LARGEST, Distribution, Kind
 from experiments.study.inputs.fields import HELP
 from experiments.study.inputs.fit_to_case import check_fits
-from experiments.study.inputs.read_variable import read_variable
+from experiments.study.inputs.read_variable import check_range, read_variable
 from experiments.study.inputs.variables import VARIABLES, input_of, is_placement
 from icage.case import Case
 from icage.errors import InputError
@@ -166,6 +166,44 @@ def study_config(table: Mapping[str, Any], case: Case) -> StudyConfig:
         if given.get(name) is not None and given["starts"] != "nominal":
             raise ConfigError(f"{name} is given, but starts = {given['starts']!r}")
     config = StudyConfig(vary=vary, **given)
+    check_fits(vary, config.nominal, case)
+    return config
+
+
+_LATER: Final = ("place",)
+"""Fields that the first documents do not have; None by default."""
+
+
+def config_of(document: Mapping[str, Any], case: Case) -> StudyConfig:
+    """The config that ``StudyConfig.document`` has written, checked like one that a user gives.
+
+    Raises
+    ------
+    ConfigError, VariableError, MisfitError:
+        A field is missing, unknown, or its value is not allowed.
+    """
+    names = {one.name for one in fields(StudyConfig)}
+    # documents from before there was such a field mean its default
+    document = {**dict.fromkeys(_LATER), **document}
+    for name in sorted({*document, *names}):
+        if name not in document or name not in names:
+            raise ConfigError(
+                f"config has {'no' if name in names else 'an unknown'} field {name!r}"
+            )
+    vary: dict[str, Distribution] = {}
+    for name, one in document["vary"].items():
+        if name not in VARIABLES:
+            raise ConfigError(f"config.vary: there is no variable {name!r}")
+        if one["kind"] not in get_args(Kind):
+            raise ConfigError(f"config.vary.{name}: there is no distribution {one['kind']!r}")
+        if not isinstance(one["parameters"], list) or not all(map(_is_number, one["parameters"])):
+            raise ConfigError(f"config.vary.{name}: finite numbers are needed")
+        vary[name] = Distribution(one["kind"], tuple(map(float, one["parameters"])))
+        check_range(VARIABLES[name], vary[name], case.unit, case.outline.diameter)
+    given = {k: _typed(k, value) for k, value in document.items() if k != "vary"}
+    config = StudyConfig(vary=vary, **given)
+    if config.nominal is not None and config.starts != "nominal":
+        raise ConfigError(f"nominal is given, but starts = {config.starts!r}")
     check_fits(vary, config.nominal, case)
     return config
 

@@ -30,6 +30,9 @@ Kind = Literal["fixed", "uniform", "normal", "truncated", "grid"]
 
 LONGEST_GRID: Final = 10_000
 
+_COUNTS: Final = {"fixed": 1, "uniform": 2, "normal": 2, "truncated": 4}
+"""Parameters of each kind but the grid."""
+
 LARGEST: Final = 1e100
 """Of any number: its square is still one."""
 
@@ -59,6 +62,8 @@ class Distribution:
 
     def __post_init__(self) -> None:
         p = self.parameters
+        if len(p) != _COUNTS.get(self.kind, len(p)):
+            raise DistributionError(f"{len(p)} numbers; {self.kind} has {_COUNTS[self.kind]}")
         if not all(abs(value) <= LARGEST for value in p):
             raise DistributionError(f"finite numbers, up to {LARGEST:g}, are needed")
         if self.kind == "uniform" and not p[0] < p[1]:

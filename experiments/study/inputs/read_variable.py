@@ -46,12 +46,18 @@ def read_variable(name: str, given: object, unit: str, diameter: float) -> dict[
         found = parse_distribution(given, one.nominal, convert)
     except DistributionError as error:
         raise VariableError(f"vary.{name}: {error}") from error
-    _check_range(one, found, unit, diameter)
+    check_range(one, found, unit, diameter)
     return {name: found}
 
 
-def _check_range(one: Variable, found: Distribution, unit: str, diameter: float) -> None:
-    """Refuse values that no hand, object or table has."""
+def check_range(one: Variable, found: Distribution, unit: str, diameter: float) -> None:
+    """Refuse values that no hand, object or table has.
+
+    Raises
+    ------
+    VariableError:
+        Names the variable, what was found and what is allowed.
+    """
     low, high = one.range_in(diameter)
     least, most = found.reach if one.tails else (found.low, found.high)
     slack = _ROUNDING * diameter if one.measure == "length" else 0.0

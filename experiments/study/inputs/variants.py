@@ -186,7 +186,9 @@ def boundary_noise(vertices: FloatArray, rms: float, rng: np.random.Generator) -
     along = np.concatenate([[0.0], np.cumsum(length)[:-1]]) / length.sum()
     waves = 2.0 * np.pi * np.arange(1, MODES + 1)[:, None] * along
     cosines, sines = rng.standard_normal((2, MODES))
-    height = rms / np.sqrt(MODES) * (cosines @ np.cos(waves) + sines @ np.sin(waves))
+    # in an order of our own: a product of matrices adds in another one on every number of threads
+    each = cosines[:, None] * np.cos(waves) + sines[:, None] * np.sin(waves)
+    height = rms / np.sqrt(MODES) * each.sum(axis=0)
     normal = np.column_stack([side[:, 1], -side[:, 0]]) / length[:, None]
     both = normal + np.roll(normal, 1, axis=0)
     size = np.hypot(*both.T)

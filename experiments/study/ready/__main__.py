@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from experiments.study.run.session import run_session, session_of
+from experiments.study.run.session import held, run_session, session_of
 from models import CASES, object_names
 
 HERE = Path(__file__).parent
@@ -66,8 +66,10 @@ def main() -> None:
         given = {"case": str(HERE / f"{one.file}.toml"), "instead": one.case, **one.over}
         folder = options.out / one.name
         there = (folder / "study.json").exists()
-        session = session_of(given, str(folder), there, 500)
-        print("\n".join(run_session(session, options.threads, None, True)), flush=True)
+        with held(str(folder)):
+            session = session_of(given, str(folder), there, 500)
+            lines = run_session(session, options.threads, None, True)
+        print("\n".join(lines), flush=True)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, NullLocator
+from PIL import Image
 
 from experiments.figures.drawing.level_curve import draw_level_curve
 from experiments.figures.drawing.palette import FINGERS, INK, PAPER, QUIET_INK, RULE, SKY, tint
@@ -26,10 +27,11 @@ from experiments.io.intervals import wilson
 from experiments.study.ready.__main__ import OUT
 from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
 from experiments.study.run.document import study_of
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
+from icage.formats.whole_files import whole_file
 from icage.friction.levels import JamTolerance, friction_levels
 
-FIGURE: Final = OUT.parent / "figures" / "friction_rates.svg"
+FIGURE: Final = OUT.parent / "figures" / "friction_rates.png"
 
 STUDIES: Final = {
     "friction-pliers": "pliers", "friction-saw": "saw", "friction-wrench": "wrench",
@@ -41,6 +43,11 @@ _SEEN: Final = np.concatenate([np.linspace(0.0, 0.02, 9), np.geomspace(0.0205, 1
 
 _LINEAR: Final = 0.02
 """Up to here the axis of the coefficient is linear, from there on logarithmic."""
+
+_SEEABLE: Final = 1e-4
+"""[1] Less is a hundredth of a point on the page."""
+
+_ENDS: Final = np.isin(np.arange(len(_SEEN)), (0, len(_SEEN) - 1))
 
 _TICKS: Final = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 
@@ -90,7 +97,8 @@ def draw(some: Sequence[Compared], path: Path) -> None:
             y = page.height - (k // 2 + 1) * block + 44.0
             page.text(x, y + rates + gap + curve + 7.0, one.name, 9.5, fontweight="bold")
             upper = page.axes(x, y + rates + gap, wide, curve)
-            draw_level_curve(upper, _SEEN, one.ratio, ())
+            bends = _bends(np.log(one.ratio))
+            draw_level_curve(upper, _SEEN[bends], one.ratio[bends], ())
             for text in list(upper.texts):
                 text.remove()
             upper.set_xlabel("")
@@ -111,8 +119,10 @@ def draw(some: Sequence[Compared], path: Path) -> None:
 
 
 def _draw_rates(axes: Axes, one: Compared) -> None:
-    axes.fill_between(_SEEN, 0.0, one.promised, color=tint(SKY, 0.30), lw=0.0, zorder=1)
-    axes.plot(_SEEN, one.promised, color=INK, lw=1.0, zorder=2)
+    bends = _bends(one.promised)
+    mu, promised = _SEEN[bends], one.promised[bends]
+    axes.fill_between(mu, 0.0, promised, color=tint(SKY, 0.30), lw=0.0, zorder=1)
+    axes.plot(mu, promised, color=INK, lw=1.0, zorder=2)
     for mu, reached, closed in one.rows:
         low, high = wilson(reached, closed)
         axes.plot([mu, mu], [low, high], color=FINGERS[1], lw=1.2, zorder=5, clip_on=False)
@@ -136,6 +146,12 @@ def _draw_rates(axes: Axes, one: Compared) -> None:
     _friction_axis(axes, numbers=True)
 
 
+def _bends(values: FloatArray) -> IntArray:
+    """Where a curve over ``_SEEN`` is not level for the eye, and its ends."""
+    flat = np.abs(np.diff(values)) < _SEEABLE
+    return np.flatnonzero(~(np.append(True, flat) & np.append(flat, True)) | _ENDS)
+
+
 def _friction_axis(axes: Axes, *, numbers: bool) -> None:
     axes.set_xscale("symlog", linthresh=_LINEAR, linscale=0.5)
     axes.set_xlim(0.0, 1.0)
@@ -145,6 +161,14 @@ def _friction_axis(axes: Axes, *, numbers: bool) -> None:
     axes.tick_params(labelsize=8.0)
 
 
+def _in_few_colours(path: Path) -> None:
+    """A picture for a page, a quarter of the size."""
+    with Image.open(path) as whole:
+        few = whole.convert("RGB").quantize(48)
+    with whole_file(path) as part:
+        few.save(part, format="png", optimize=True)
+
+
 def main(folder: str = str(OUT), figure: str = str(FIGURE)) -> None:
     """Draw the picture from the documents in a folder."""
     found = [
@@ -152,6 +176,8 @@ def main(folder: str = str(OUT), figure: str = str(FIGURE)) -> None:
         for name, title in STUDIES.items()
     ]
     draw(found, Path(figure))
+    if Path(figure).suffix.lower() == ".png":
+        _in_few_colours(Path(figure))
     for one in found:
         at = np.interp([mu for mu, _, _ in one.rows], _SEEN, one.promised)
         for (mu, reached, closed), share in zip(one.rows, at, strict=True):

@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter
 
 from experiments.figures.drawing.palette import INK, QUIET_INK, RULE
 from experiments.figures.plan import FIGURE_SETTINGS, FORMATS
+from experiments.io.one_line import in_figure
 from icage.errors import InputError
 from icage.formats.whole_files import whole_file
 
@@ -48,8 +49,8 @@ class Page:
         return float(text.get_window_extent().width * 72.0 / self.figure.dpi)
 
     def caption(self, y: float, title: str, lines: list[str]) -> None:
-        """A bold title on the baseline y, quiet lines below it."""
-        self.text(MARGIN, y, title, 10.0, fontweight="bold")
+        """A bold title on the baseline y, which may be any name; quiet lines below it."""
+        self.text(MARGIN, y, in_figure(title), 10.0, fontweight="bold")
         for k, line in enumerate(lines, 1):
             self.text(MARGIN, y - ROW * k, line, 8.5, color=QUIET_INK)
 

@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from experiments.io.intervals import rate_upper
+from experiments.io.one_line import markdown, printable
 from experiments.io.outcome_words import END_WORDS, NOT_CLOSED, VERDICT_WORDS
+from experiments.io.versions import ANY_CODE, OTHER_CODE
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.method import method
 from experiments.study.report.names import display, merged, percent
@@ -27,9 +29,9 @@ def results_page(document: Mapping[str, Any], command: str) -> str:
 
 def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     found, config = document["found"], document["config"]
-    yield f"# Study: {document['name']}"
+    yield f"# Study: {markdown(document['name'])}"
     yield ""
-    yield f"**{sentence(found, document['name'])}.**"
+    yield f"**{sentence(found, markdown(document['name']))}.**"
     yield from _closed(found)
     yield ""
     yield from table(
@@ -48,11 +50,18 @@ def _lines(document: Mapping[str, Any], command: str) -> Iterator[str]:
     yield ""
     yield from method(document)
     yield ""
-    yield "Versions: " + ", ".join(f"{k} {v}" for k, v in document["versions"].items()) + "."
+    yield (
+        "Versions: "
+        + ", ".join(f"{k} {markdown(v)}" for k, v in document["versions"].items())
+        + "."
+    )
+    if document.get(ANY_CODE):
+        known = ", ".join(document.get(OTHER_CODE, ())) or "none is known"
+        yield f"Rows of other code of the same version were taken: {known}."
     yield ""
     yield "## Command"
     yield ""
-    yield f"    {command}"
+    yield f"    {printable(command)}"
 
 
 def _closed(found: Mapping[str, Any]) -> Iterator[str]:

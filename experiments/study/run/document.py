@@ -6,17 +6,17 @@ import hashlib
 import json
 import math
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from experiments.io.changes import changes
-from experiments.io.versions import versions
-from experiments.study.inputs.config import StudyConfig
-from experiments.study.inputs.distributions import Distribution
+from experiments.io.versions import CODE, versions
+from experiments.study.inputs.config import StudyConfig, config_of
 from experiments.study.run.shard import Study
 from icage.case import Case
 from icage.cells.membership import VERDICTS, query
 from icage.errors import InputError
-from icage.outline import Outline
+from icage.formats.case_json import parse_case
 from icage.planner import plan
 
 FORMAT: Final = "icage-study/1"
@@ -67,28 +67,45 @@ def study_of(document: Mapping[str, Any], trials: int | None = None) -> Study:
     InputError:
         It is no study's document.
     """
+    case, config = parsed_document(document, trials)
+    cage = plan(case.outline, case.contacts, case.finger_radius)
+    return Study(config, case, cage)
+
+
+def parsed_document(
+    document: Mapping[str, Any], trials: int | None = None
+) -> tuple[Case, StudyConfig]:
+    """Case and config of a document, every value checked as in a case file and in a TOML file.
+
+    Raises
+    ------
+    InputError:
+        A key is missing or unknown, or its value is not allowed.
+    """
     check_format(document)
     try:
         given = document["case"]
-        case = Case(
-            document["name"], document["unit"], Outline(given["outline"]["vertices"]),
-            given["finger_radius"], _array(given["contacts"]), (),
-        )  # fmt: skip
+        case = parse_case(
+            {
+                "format": "icage-case/1",
+                "name": document["name"],
+                "unit": document["unit"],
+                "outline": {"vertices": given["outline"]["vertices"]},
+                "finger_radius": given["finger_radius"],
+                "grasp": {"contacts": given["contacts"]},
+            },
+            Path(),
+        )
         plain = dict(document["config"])
-        nominal = plain.pop("nominal")
         if trials is not None:
             plain["trials"] = trials
-        vary = {
-            name: Distribution(one["kind"], tuple(one["parameters"]))
-            for name, one in plain.pop("vary").items()
-        }
-        config = StudyConfig(
-            vary=vary, nominal=None if nominal is None else tuple(nominal), **plain
-        )
-    except (KeyError, TypeError, AttributeError) as error:
+        config = config_of(plain, case)
+        for name, version in document["versions"].items():
+            if not isinstance(name, str) or not isinstance(version, str):
+                raise InputError(f"versions: {name} is {version!r}; a word is needed")
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         raise InputError(f"not a study's document: {error!r}") from error
-    cage = plan(case.outline, case.contacts, case.finger_radius)
-    return Study(config, case, cage)
+    return case, config
 
 
 def check_format(document: Mapping[str, Any]) -> None:
@@ -103,16 +120,14 @@ def check_format(document: Mapping[str, Any]) -> None:
         raise InputError(f"format {document.get('format')!r}; {FORMAT!r} is needed")
 
 
-def _array(rows: Any) -> Any:
-    import numpy as np
-
-    return np.array(rows, dtype=np.float64)
-
-
 def fingerprint(document: Mapping[str, Any]) -> str:
-    """What two shards of one study have in common: config, case and versions, not its length."""
+    """What two shards of one study have in common: config, case and versions, not its length.
+
+    Nor its code: a study goes on with other code if it is told to, and says so.
+    """
     config = {k: v for k, v in document["config"].items() if k not in _loose(document)}
-    kept = {key: document[key] for key in ("name", "unit", "case", "versions")}
+    kept = {key: document[key] for key in ("name", "unit", "case")}
+    kept["versions"] = {k: v for k, v in document["versions"].items() if k != CODE}
     text = json.dumps({**kept, "config": config}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -126,7 +141,9 @@ def _loose(document: Mapping[str, Any]) -> tuple[str, ...]:
     return ("case", "grasp", *grows)
 
 
-def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+def differences(
+    old: Mapping[str, Any], new: Mapping[str, Any], any_code: bool = False
+) -> list[str]:
     """Why a study cannot go on with another's shards, in words.
 
     Raises
@@ -137,16 +154,18 @@ def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     check_format(old)
     lines: list[str] = []
     try:
-        lines += _differences(old, new)
+        lines += _differences(old, new, (CODE,) if any_code else ())
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"not a study's document: {error!r}") from error
     return lines
 
 
-def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
+def _differences(
+    old: Mapping[str, Any], new: Mapping[str, Any], free: tuple[str, ...]
+) -> Iterator[str]:
     yield from changes(old["config"], new["config"], _loose(new))
     if old["name"] != new["name"]:
         yield f"the case was {old['name']!r}, is {new['name']!r}"
     if old["case"] != new["case"] or old["unit"] != new["unit"]:
         yield "the case is another one"
-    yield from changes(old["versions"], new["versions"], shown=str)
+    yield from changes(old["versions"], new["versions"], free, str)

@@ -9,16 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from experiments.io.progress import stage_bar
 from experiments.io.versions import versions
 from experiments.replay.recorded_trial import RecordingError
 from experiments.replay.what_is_filmed import filmed_alone
-from experiments.study.run.document import study_of
-from experiments.study.run.folder import SHARDS, TRIALS, read_document
-from experiments.study.run.rows import table_of
+from experiments.study.run.document import fingerprint, study_of
+from experiments.study.run.folder import StudyFolder, read_document
+from experiments.study.run.rows import schema_of, table_of
 from experiments.study.run.shard import Ran, Study, run_trials
 from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray
@@ -53,7 +51,7 @@ def rerun_trial(folder: Path, index: int) -> StudyRerun:
     if document is None:
         raise RecordingError(f"{str(folder)!r} holds no study")
     study = study_of(document)
-    recorded = _row(folder, index)
+    recorded = _row(StudyFolder(folder, fingerprint(document), schema_of(study)), index)
     ran = run_trials(study, np.array([index]))
     now: dict[str, Any] = table_of(study, ran).to_pylist()[0]
     found = tuple((n, recorded.get(n), v) for n, v in now.items() if recorded.get(n) != v)
@@ -67,21 +65,14 @@ def _versions(document: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
     return {n: pair for n, pair in pairs.items() if pair[0] != pair[1]}
 
 
-def _row(folder: Path, index: int) -> dict[str, Any]:
+def _row(folder: StudyFolder, index: int) -> dict[str, Any]:
     """The recorded row of a trial, from the table or from a shard."""
-    whole = folder / TRIALS
-    count = 0
-    for path in [whole] if whole.is_file() else sorted((folder / SHARDS).glob("trials-*.parquet")):
-        try:
-            trials = pq.read_table(path, columns=["trial"])["trial"].to_numpy()
-            at = np.flatnonzero(trials == index)
-            if len(at):
-                row: dict[str, Any] = pq.read_table(path).slice(int(at[0]), 1).to_pylist()[0]
-                return row
-        except (OSError, KeyError, pa.ArrowException) as error:
-            raise RecordingError(f"{str(path)!r} is not a table of trials: {error}") from error
-        count += len(trials)
-    raise RecordingError(f"{str(folder)!r} has no trial {index}; it has {count}, counted from 0")
+    row = folder.row(index)
+    if row is None:
+        raise RecordingError(
+            f"{str(folder.path)!r} has no trial {index}; it has {folder.count()}, counted from 0"
+        )
+    return row
 
 
 def film_rerun(done: StudyRerun, path: Path, camera: bool | None = None) -> None:

@@ -32,11 +32,11 @@ def table_of(study: Study, ran: Ran) -> Table:
         **_pose("meant", ran.meant),
         **_pose("start", ran.starts),
         **{name: ran.values[name] for name in study.design.names},
-        "verdict": pa.array([VERDICTS[k] for k in answers.verdict]),
+        "verdict": pa.array([VERDICTS[k] for k in answers.verdict], pa.string()),
         "in_cage": answers.in_cage,
         "margin": _known(answers.margin),
         "target_margin": _known(answers.target_margin),
-        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome]),
+        "outcome": pa.array([STUDY_OUTCOMES[k] for k in ran.outcome], pa.string()),
         "grasp_id": ran.grasp_id,
         **{
             f"end_{name}": of_closings(closings.end[:, k])
@@ -49,7 +49,24 @@ def table_of(study: Study, ran: Ran) -> Table:
         "penetration_rest": of_closings(closings.penetration_rest * sizes[ran.done]),
         "steps": of_closings(closings.steps),
     }
-    return pa.table(columns)
+    table: Table = pa.table(columns).cast(schema_of(study))
+    return table
+
+
+def schema_of(study: Study) -> Any:
+    """Names and types of the columns, in their order."""
+    pose = ("x", "y", "theta", "sigma")
+    kinds = {
+        "trial": pa.int64(), "seed": pa.uint64(), "verdict": pa.string(), "in_cage": pa.bool_(),
+        "outcome": pa.string(), "grasp_id": pa.int64(), "steps": pa.int64(),
+    }  # fmt: skip
+    names = (
+        "trial", "seed", *(f"meant_{k}" for k in pose), *(f"start_{k}" for k in pose),
+        *study.design.names, "verdict", "in_cage", "margin", "target_margin", "outcome", "grasp_id",
+        *(f"end_{k}" for k in pose), "position_error", "angle_error", "peak_force",
+        "penetration_max", "penetration_rest", "steps",
+    )  # fmt: skip
+    return pa.schema([(name, kinds.get(name, pa.float64())) for name in names])
 
 
 def _pose(prefix: str, placements: FloatArray) -> dict[str, Any]:

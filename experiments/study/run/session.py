@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from experiments.cases.case_files import ONE, check_case_files, write_case_files
 from experiments.cases.chosen import Chosen, chosen
 from experiments.cases.reading import reading_of, say_notes
 from experiments.cases.with_discs import physical_case
 from experiments.io.arrow_table import Table
+from experiments.io.held_folder import held_folder
 from experiments.io.options import check_folder
 from experiments.io.pieces import cores
 from experiments.io.progress import stage_bar
+from experiments.io.versions import hint_of_code, said_of_code
 from experiments.study.inputs.config import ConfigError, read_toml, study_config
 from experiments.study.inputs.fields import DRAWING
 from experiments.study.report.summary import sentence, summary
@@ -31,6 +35,7 @@ from experiments.study.run.folder import (
     read_document,
     write_document,
 )
+from experiments.study.run.rows import schema_of
 from experiments.study.run.shard import Study
 from experiments.study.run.shards import Backend, on_threads, run_study
 from icage.case import Case
@@ -38,6 +43,9 @@ from icage.formats.load import is_shipped, load
 from icage.formats.whole_files import whole_file
 
 MAP, RATES, INDICES = "map.svg", "rates.svg", "indices.svg"
+
+REPLAY: Final = "replay.json"
+"""What a replay writes, beside a table of the same name as ours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +58,14 @@ class Session:
     shard: int
     chosen: Chosen | None = None
     """The grasp that was searched, for an object that came without one."""
+    any_code: bool = False
+    """What other code of the same version has computed is taken."""
 
 
-def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: int) -> Session:
-    """Check everything before anything runs.
+def session_of(
+    given: Mapping[str, Any], out: str | None, resume: bool, shard: int, any_code: bool = False
+) -> Session:
+    """Check everything before anything runs; hold the folder meanwhile (``held``).
 
     Raises
     ------
@@ -73,9 +85,9 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
             table["case"] = instead
     elif instead is not None:
         raise ConfigError(f"--case {instead!r} is for TOML files; CASE names the case")
-    check_folder("--out", path, (JSON, TRIALS, PAGE))
-    check_folder("--out", path / SHARDS)
     old = read_document(path)
+    if old is None:
+        _check_kind(out, path)
     if old is not None and not resume:
         raise ConfigError(
             f"--out {out!r} holds a study already; --resume goes on with it, or name another folder"
@@ -101,17 +113,20 @@ def session_of(given: Mapping[str, Any], out: str | None, resume: bool, shard: i
         study = Study(study_config(table, physical.case), physical.case, physical.cage)
     document = study_document(study)
     if old is not None:
-        lines = differences(old, document)
+        lines = differences(old, document, any_code)
         if lines:
-            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}")
-    folder = StudyFolder(path, fingerprint(document))
+            hint = hint_of_code(old["versions"], document["versions"])
+            raise ConfigError(f"--out {out!r} holds another study: {'; '.join(lines)}{hint}")
+    document |= said_of_code(old, document, any_code)
+    folder = StudyFolder(path, fingerprint(document), schema_of(study))
+    folder.check()
     kept = folder.beyond(study.design.total)
     if kept:
         raise ConfigError(
             f"trials is {study.config.trials}, but --out {out!r} holds {kept} already, and none is "
             f"thrown away; {kept} or more is needed, or another folder"
         )
-    return Session(study, document, folder, shard, found)
+    return Session(study, document, folder, shard, found, any_code)
 
 
 def _only_trials(table: Mapping[str, Any]) -> int | None:
@@ -151,23 +166,47 @@ def _case(table: Mapping[str, Any], drawing: Namespace | None = None) -> Case:
     return case
 
 
+@contextmanager
+def held(out: str | None) -> Generator[None]:
+    """Make the folder of a study and hold it, so that what is checked there stays true.
+
+    Two studies at once would take each other's shards for leftovers.
+
+    Raises
+    ------
+    InputError:
+        There is no such place, it cannot be written to, or another process holds it.
+    """
+    if out is None:
+        raise ConfigError("--out DIR is needed")
+    path = Path(out)
+    check_folder("--out", path, (JSON, TRIALS, PAGE, MAP, RATES, INDICES))
+    check_folder("--out", path / SHARDS)
+    with held_folder(path, "study"):
+        yield
+
+
+def _check_kind(out: str, path: Path) -> None:
+    """A folder without a study's document holds nothing that a study would take the place of."""
+    for name in (TRIALS, REPLAY, PAGE, MAP, RATES, INDICES):
+        if os.path.lexists(path / name):
+            raise ConfigError(
+                f"--out {out!r} holds {name}, but no {JSON}: it is of something else and is not "
+                "replaced; name another folder"
+            )
+
+
 def run_session(
     session: Session, threads: int | None, scheduler: str | None, figures: bool
 ) -> list[str]:
-    """Run what is missing and write all results; the lines to print."""
+    """Run what is missing and write all results; the lines to print. Inside ``held``."""
     backend = _backend(session, threads, scheduler)
-    with session.folder.alone():
-        return _run(session, backend, figures)
-
-
-def _run(session: Session, backend: Backend, figures: bool) -> list[str]:
     study, folder = session.study, session.folder
     total = study.design.total
     print(announcement(study, session.document), flush=True)
     doubt = warning(session.document)
     if doubt is not None:
         print(f"icage: warning: {doubt}", file=sys.stderr, flush=True)
-    folder.sweep()
     if session.chosen is not None:
         write_case_files(session.chosen, folder.path, ONE)
     write_document({**session.document, "finished": False}, folder.path)
@@ -195,7 +234,7 @@ def _backend(session: Session, threads: int | None, scheduler: str | None) -> Ba
         return on_threads(threads or cores())
     from experiments.study.run.cluster import on_cluster
 
-    return on_cluster(scheduler, session.document)
+    return on_cluster(scheduler, session.document, session.any_code)
 
 
 def _write_page(document: dict[str, Any], folder: Path) -> None:

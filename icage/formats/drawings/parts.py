@@ -288,6 +288,11 @@ def _picked(
         if reading.pick > len(parts):
             raise FormatError(f"pick is {reading.pick}; the drawing has {told}")
         return parts[reading.pick - 1], [f"of {told} number {reading.pick} was taken"]
+    if reading.pick is not None:
+        raise FormatError(
+            f"what --pick {reading.pick} names has {told}; one connected silhouette is needed: "
+            "the name of one of them"
+        )
     raise FormatError(
         f"the drawing has {told}; one connected silhouette is needed: "
         "--pick largest, --pick 1 to take them by area, or --pick id=NAME"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 from icage.errors import FormatError, InputError
 from icage.formats.drawings.reading import Reading, option_of
 from icage.formats.files import read_bytes
+from icage.library_faults import geometry_told
 
 if TYPE_CHECKING:
     from icage.formats.drawings.drawing import Drawing
@@ -133,6 +134,11 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         if path.suffix.lower() in NOT_READ:
             what, way_out = NOT_READ[path.suffix.lower()]
             raise FormatError(f"{path} is {what}, which is not read: {way_out}")
+        if path.suffix.lower() == ".json":
+            raise FormatError(
+                f"{path} is no drawing but JSON: a case has its outline already, and `icage plan` "
+                "and `icage grasps` take it; GeoJSON is read if its name ends in .geojson"
+            )
         raise FormatError(f"{path} is no drawing; {', '.join(FORMATS)} are read")
     if _is_no_file(path):
         raise FormatError(f"{path} is a pipe or a device; {form.name} in a file is needed")
@@ -174,6 +180,7 @@ def _is_no_file(path: Path) -> bool:
         return False
 
 
+@geometry_told()
 def trace_file(path: Path, reading: Reading) -> Traced:
     """The outline of a drawing in a file. Raises what ``read_drawing`` and ``traced`` raise."""
     from icage.formats.drawings.trace import traced  # only now: it loads shapely

@@ -26,6 +26,7 @@ from icage.formats.drawings.parts import (
 )
 from icage.formats.drawings.reading import Reading
 from icage.formats.drawings.simplify import simplified
+from icage.library_faults import geometry_told
 from icage.outline import Outline
 from icage.units import METRES, Unit
 
@@ -69,13 +70,15 @@ class Traced:
     @property
     def symmetric_difference(self) -> float:
         """[unit^2] Area that is in the drawing or in the outline, but not in both."""
-        return float(self.source.symmetric_difference(self.outline.polygon).area)
+        with geometry_told():
+            return float(self.source.symmetric_difference(self.outline.polygon).area)
 
     @property
     def distance(self) -> float:
         """[unit] Largest distance of a vertex of either boundary from the other one."""
         ring, own = self.source.exterior, self.outline.polygon.exterior
-        return float(shapely.hausdorff_distance(ring, own))
+        with geometry_told():
+            return float(shapely.hausdorff_distance(ring, own))
 
 
 def traced(drawing: Drawing, reading: Reading) -> Traced:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -176,6 +177,9 @@ def _flattened(chain: list[Curve], shown: Shown) -> Ring:
     bounds = np.vstack([vectors_of(curve) for curve in chain])
     if not np.isfinite(bounds).all() or np.abs(bounds).max() > LARGEST_COORDINATE:
         raise FormatError(f"coordinates that are not finite or beyond {LARGEST_COORDINATE:g}")
+    arcs = [curve for curve in chain if isinstance(curve, EllipseArc)]
+    if not all(math.isfinite(arc.start + arc.sweep) for arc in arcs):
+        raise FormatError("angles that are not finite")
     low, high = bounds.min(axis=0), bounds.max(axis=0)
     if high[2] - low[2] > _FLAT * float((high - low).max()):
         raise FormatError(

@@ -67,7 +67,7 @@ def property_of(entity: Any, name: str, code: int, default: Any) -> Any:
     """A property that every entity may have, of kinds that ezdxf keeps as bare tags, too."""
     if entity.dxf.is_supported(name):
         return entity.dxf.get(name, default)
-    for tags in entity.xtags.subclasses:
+    for tags in getattr(getattr(entity, "xtags", None), "subclasses", ()):
         for tag in tags:
             if tag.code == code:
                 return tag.value

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from icage.errors import FormatError
 from icage.formats.drawings.drawing import Drawing
 from icage.formats.drawings.reading import Reading
@@ -11,6 +9,7 @@ from icage.formats.dxf.blocks import WORLD, Shown, show
 from icage.formats.dxf.layers import Layers
 from icage.formats.dxf.tags import document
 from icage.formats.dxf.units import UNITS
+from icage.library_faults import decoding_told
 
 
 def read(content: bytes, reading: Reading) -> Drawing:
@@ -22,11 +21,11 @@ def read(content: bytes, reading: Reading) -> Drawing:
         Not a readable DXF drawing, or something in it that is not understood.
     """
     found = document(content)
-    space = found.content.modelspace()
-    if not len(space):
-        raise FormatError(_nothing(found.content))
-    shown = Shown(Layers(found.content, reading.layers))
-    with np.errstate(all="ignore"):  # what is not finite is refused by the entity's name
+    with decoding_told("ezdxf", "the DXF file"):  # it raises what it meets where it is asked
+        space = found.content.modelspace()
+        if not len(space):
+            raise FormatError(_nothing(found.content))
+        shown = Shown(Layers(found.content, reading.layers))
         show(space, WORLD, shown)
     if not shown.lines:
         passed = ", ".join(repr(name) for name in sorted(shown.layers.passed)[:20])

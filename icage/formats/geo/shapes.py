@@ -14,6 +14,7 @@ from icage.errors import FormatError
 from icage.formats.drawings.area import MAX_POINTS
 from icage.formats.drawings.curves import Polyline
 from icage.formats.drawings.drawing import Drawing, Line, Ring, Shape
+from icage.outline import LARGEST_COORDINATE
 
 MAX_PARTS: Final = 10_000
 """Polygons and lines of a file."""
@@ -49,8 +50,10 @@ def add(geometry: shapely.Geometry, names: tuple[str, ...], found: Found) -> Non
         if len(found.shapes) + len(found.lines) >= MAX_PARTS:
             raise FormatError(f"the file has more than {MAX_PARTS} polygons and lines")
         kind = type(part).__name__
-        if not np.isfinite(shapely.get_coordinates(part)).all():
-            raise FormatError(f"a {kind} has coordinates that are not finite")
+        if not (np.abs(shapely.get_coordinates(part)) <= LARGEST_COORDINATE).all():
+            raise FormatError(
+                f"a {kind} has coordinates that are not finite or beyond {LARGEST_COORDINATE:g}"
+            )
         if shapely.is_empty(part):
             continue
         if isinstance(part, shapely.Polygon):

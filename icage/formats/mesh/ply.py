@@ -46,14 +46,18 @@ def read(content: bytes, reading: Reading) -> Drawing:
     for element in elements:
         names = [name for name, _, _ in element.properties]
         if element.name == "vertex":
-            lists, table = source.table(element, None)
-            if not {"x", "y", "z"} <= set(names) or lists is not None:
-                raise FormatError("the vertices of the PLY file need the properties x, y and z")
+            plain = all(count is None for _, _, count in element.properties)
+            if not plain or not {"x", "y", "z"} <= set(names):
+                raise FormatError(
+                    "the vertices of the PLY file need the properties x, y and z, and no lists"
+                )
+            _, table = source.table(element, None)
             vertices = np.column_stack([table[names.index(axis)] for axis in "xyz"])
         elif element.name == "face":
-            own = next((name for name in names if name in _CORNERS), None)
+            lists_of = [name for name, _, count in element.properties if count is not None]
+            own = next((name for name in lists_of if name in _CORNERS), None)
             if own is None:
-                raise FormatError("the faces of the PLY file have no vertex_indices")
+                raise FormatError("the faces of the PLY file have no list of vertex_indices")
             lists, _ = source.table(element, own)
             assert lists is not None
             faces = fans(*lists)

@@ -20,13 +20,16 @@ from tests.experiments.collection.objects import (
     parts,
 )
 from tests.experiments.commands.runner import Result
+from tests.killed import killed
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 def test_killed_and_gone_on_with(alone: Path, begun: Path, grasps: Callable[..., Result]):
-    half = begun.with_name(f".{begun.stem}.0123abcd.parquet")
-    half.write_bytes(b"half a table")
+    killed(begun.parent)
+    mine = begun.with_name(f".{begun.stem}.0123abcd.parquet")
+    mine.write_bytes(b"only looks like half a table")
     assert f"{SEARCHED - 1} searched now" in grasps("--workers", "1").out
+    mine.unlink()
     check_same(begun, alone)
 
 
@@ -61,7 +64,7 @@ def test_a_killed_worker_ends_the_command_and_loses_nothing(
     with monkeypatch.context() as patch:
         patch.setattr(KeptRows, "keep", killing)
         line = grasps("--workers", "2").error_line()
-    assert line.startswith("a process that searched was killed")
+    assert line.startswith("a process that worked for this one was killed")
     kept = len(parts(folder.parent / "table.parquet"))
     assert kept >= 1
     assert f"{SEARCHED - kept} searched now" in grasps("--workers", "1").out

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import errno
+import os
 import pkgutil
 import signal
 import subprocess
@@ -11,7 +13,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import shapely
 
 import experiments.commands
 from experiments import cli
@@ -97,6 +101,60 @@ def test_our_own_fault_is_exit_1_with_one_line(monkeypatch: Any, capsys: Any):
     assert "ICAGE_DEBUG=1" in result.err
 
 
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (MemoryError(), "not enough memory"),
+        (OSError(errno.ENOMEM, "Cannot allocate memory"), "not enough memory"),
+        (OSError(errno.ENOSPC, "No space left", "a.json"), "a.json cannot be written: No space"),
+        (OSError(errno.EMFILE, "Too many open files", "a"), "too many files are open"),
+        (PermissionError(errno.EACCES, "Permission denied", "a.json"), "'a.json': Permission"),
+        (shapely.GEOSException("TopologyException: side location"), "gave up on this object: Topo"),
+        (np.linalg.LinAlgError("Singular matrix"), "gave up on this object: Singular matrix"),
+    ],
+)  # fmt: skip
+def test_what_gives_out_beneath_us_is_exit_2_with_one_line(
+    error: Exception, words: str, monkeypatch: Any, capsys: Any
+):
+    monkeypatch.setattr("experiments.commands.plan.run", raising(error))
+    assert words in here(capsys, "plan", CASE).error_line()
+
+
+def test_memory_that_cannot_be_had_is_exit_2():
+    """As the system refuses it, and not by an exception of ours."""
+    program = (
+        "import sys, experiments.commands.plan as plan\n"
+        "from experiments.cli import main\n"
+        "plan.run = lambda args: bytearray(10**12) and 0\n"
+        f"sys.exit(main(['plan', {CASE!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "icage: error: there is not enough memory for this\n"
+
+
+WARNS = (
+    "import sys, warnings, experiments.commands.plan as plan\n"
+    "from experiments.cli import main\n"
+    "import numpy as np\n"
+    "def run(args):\n"
+    "    warnings.warn('of a library', DeprecationWarning)\n"
+    "    return int(np.float64(1e300) * np.float64(1e300) < 1.0)\n"
+    "plan.run = run\n"
+    f"sys.exit(main(['plan', {CASE!r}]))"
+)
+
+
+@pytest.mark.parametrize("shown", [False, True])
+def test_warnings_of_libraries_are_seen_by_who_asks_for_them(shown: bool):
+    options = ["-W", "always"] if shown else []
+    done = subprocess.run([sys.executable, *options, "-c", WARNS], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert ("overflow encountered" in done.stderr) == shown
+    assert ("of a library" in done.stderr) == shown
+    assert shown or done.stderr == ""
+
+
 def test_an_interrupt_inside_a_compiled_function_is_one(monkeypatch: Any, capsys: Any):
     error = SystemError("<built-in function> returned a result with an exception set")
     error.__cause__ = SystemError("another compiled function between")
@@ -129,7 +187,13 @@ def wait_until_idle(pid: int) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_an_interrupt_is_exit_130_without_a_traceback():
+@pytest.mark.parametrize(
+    ("sent", "code", "word"),
+    [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated"), ("SIGHUP", 129, "terminated")],
+)
+def test_an_end_that_is_asked_for_is_an_interrupt_without_a_traceback(
+    sent: str, code: int, word: str
+):
     command = subprocess.Popen(
         [*ICAGE, "query", CASE, "-"],
         stdin=subprocess.PIPE,
@@ -137,13 +201,31 @@ def test_an_interrupt_is_exit_130_without_a_traceback():
         stderr=subprocess.PIPE,
         text=True,
         # whoever starts tests in the background of a shell has interrupts ignored by inheritance
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=lambda: signal.signal(getattr(signal, sent), signal.SIG_DFL),
     )
     wait_until_idle(command.pid)  # it waits for its placements
-    command.send_signal(signal.SIGINT)
+    command.send_signal(getattr(signal, sent))
     out, err = command.communicate(timeout=60)
-    assert (command.returncode, out) == (130, "")
-    assert "Traceback" not in err
+    assert (command.returncode, out, err) == (code, "", f"icage: error: {word}\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_a_signal_that_somebody_handles_stays_theirs(monkeypatch: Any, capsys: Any):
+    heard: list[int] = []
+
+    def asks(_: Any) -> int:
+        os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
+    monkeypatch.setattr("experiments.commands.plan.run", asks)
+    before = signal.signal(signal.SIGTERM, lambda number, _: heard.append(number))
+    try:
+        assert here(capsys, "plan", CASE).code == 0
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert heard == [signal.SIGTERM]
+    assert here(capsys, "plan", CASE).code == 143
+    assert signal.getsignal(signal.SIGTERM) is before
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX pipes")

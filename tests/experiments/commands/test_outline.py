@@ -50,6 +50,23 @@ def test_the_document_has_the_source_and_is_a_case(tmp_path: Path, capsys: Any):
     assert icage.load(path).outline.area > 706.86
 
 
+def test_a_case_is_no_drawing(tmp_path: Path, capsys: Any):
+    path = tmp_path / "case.json"
+    path.write_text("{}")
+    line = here(capsys, "outline", str(path)).error_line()
+    assert "no drawing but JSON: a case has its outline already" in line
+    assert ".geojson" in line
+
+
+def test_a_name_of_several_parts_asks_for_another_name(tmp_path: Path, capsys: Any):
+    path = drawn(tmp_path, TWO.replace('id="bar"', 'id="bar" class="x"').replace(
+        HEAD, HEAD + '<g id="both">').replace("</svg>", "</g></svg>"))  # fmt: skip
+    assert "or --pick id=NAME" in here(capsys, "outline", path).error_line()
+    line = here(capsys, "outline", path, "--pick", "id=both").error_line()
+    assert "what --pick id=both names has 2 separate filled parts" in line
+    assert line.count("--pick") == 1
+
+
 def test_the_figure_shows_outline_and_drawing(tmp_path: Path, capsys: Any):
     figure = tmp_path / "f.svg"
     told = here(capsys, "outline", drawn(tmp_path, ROUND), "--figure", str(figure))

@@ -72,6 +72,7 @@ def test_discs(capsys: Any) -> None:
     plan = document(capsys, "--friction", "0.05,0.5", case=str(CASES / "disc_Y.json"))
     little, much = plan["friction"]
     assert plan["sigma_0"] < much["sigma_first"] <= little["sigma_first"] <= plan["sigma_first"]
+    assert much["jam"]["placement"]["sigma"] == pytest.approx(much["sigma_first"], rel=1e-9)
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png"])

@@ -65,6 +65,18 @@ def test_what_is_sound_passes(sound: PhysicalCase) -> None:
     assert not failures(sound, CLOSE)
 
 
+def test_closings_with_friction_from_below_their_level(sound: PhysicalCase) -> None:
+    row = in_physics(Row("case", planned(), 0, replace(CLOSE, mus=(0.1, 0.4))), sound)
+    assert not checks(row)
+    document = row_document(row)
+    assert [(run["mu"], run["target"]) for run in document["friction"]] == [(0.1, 12), (0.4, 12)]
+    assert any("24/24, 2" in line for line in terminal([document]))
+    (ends, other) = row.rubbed
+    lost = replace(ends, in_target=np.arange(len(ends)) > 0)
+    found = checks(replace(row, rubbed=(lost, other)))
+    assert any("friction 0.1" in line and "11 of 12" in line for line in found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("factor", "words"), [(1.01, ["escaped below"]), (0.99, ["escaped above", "measure"])]

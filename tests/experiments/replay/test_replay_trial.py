@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from experiments.io.parquet_files import words_of, write_table
 from experiments.replay import clips, video
 from experiments.replay.recorded_trial import RecordingError, read_trial, rerun
 from tests.experiments.commands.runner import here
@@ -41,7 +42,7 @@ def copied(folder: Path, place: Path, **changed: Any) -> Path:
             table = table.set_column(at, name, pa.array(column))
         else:
             document[name] = value
-    pq.write_table(table, place / "trials.parquet")
+    write_table(table, place / "trials.parquet", words_of(table))
     (place / "replay.json").write_text(json.dumps(document))
     return place
 

@@ -84,7 +84,7 @@ def test_a_link_is_followed(tmp_path: Path):
         link = tmp_path / f"link_{there}.json"
         link.symlink_to(target)
         with whole_file(link) as part:
-            assert part.parent == target.parent
+            assert target.parent in part.parents
             part.write_text("new")
         assert link.is_symlink()
         assert target.read_text() == "new"

@@ -27,9 +27,12 @@ from sim.closing.batch import close_many
 from sim.closing.judge import judge
 from sim.closing.outcome import ClosingOutcomes
 from sim.closing.step_check import ENDINGS
+from sim.grip.jam import held_at, least_mu
+from sim.grip.stick import OPENED, SLIPS, opened, rubbing, stuck
 from sim.world.config import SimConfig
 from sim.world.scene import Scene
 from tests.sim.grasps import GRASPS, KnownGrasp, l_shape, shipped, starts_near, t_shape
+from tests.sim.grip.test_jam import on_a_turned_triangle, on_a_wedge
 
 NAMES = ("T", "L", "pliers")
 
@@ -197,8 +200,19 @@ def test_ends_without_a_grasp_are_called_what_they_are() -> None:
     assert len(none) == 0
     with pytest.raises(InputError, match="above 0"):
         random_attack_second(grasp.scene(), starts, np.zeros(1), np.random.default_rng(0))
-    with pytest.raises(InputError, match="no friction"):
-        close_many_second(grasp.scene(SimConfig(friction=0.1)), starts_near(grasp, 1, seed=9))
+    yielding = SimConfig(linkage_compliance=1e-6)
+    with pytest.raises(InputError, match="rigid linkage"):
+        close_many_second(grasp.scene(yielding), starts_near(grasp, 1, seed=9))
+
+
+@pytest.mark.parametrize("make", [lambda: on_a_wedge(8.0), lambda: on_a_turned_triangle(0.2)])
+def test_it_slides_below_the_least_friction_and_sticks_above(make) -> None:
+    scene, placement = make()
+    wanted = least_mu(held_at(scene, placement))
+    for share, sticks in ((0.97, False), (1.03, True)):
+        there = rubbing(scene, share * wanted, SimConfig(max_time=0.3))
+        closed = close_many_second(there, opened(scene, placement, OPENED))
+        assert stuck(there, closed, 10.0 * SLIPS).tolist() == [sticks]
 
 
 def test_without_pymunk_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,10 @@ import pytest
 from icage.arrays import FloatArray
 from sim.closing.approach import approached
 from sim.closing.batch import close_many
+from sim.closing.computed_step import empty_room, go_on
 from sim.closing.one import data_at
 from sim.closing.outcome import ClosingOutcomes
+from sim.closing.plant import plant_of
 from sim.closing.push import Pushed, push
 from sim.closing.step_check import ENDINGS, PINCHED, RUNNING, StepCheck
 from sim.closing.varied import Worlds
@@ -52,6 +54,32 @@ def test_every_step_is_the_engines(name: str) -> None:
     grasp = GRASPS[name]()
     starts = starts_near(grasp, 8, seed=31, opening=1.6, shift=0.06, turn=0.3)
     assert assert_as_the_engine(grasp.scene(), starts) > 8 * 20
+
+
+@pytest.mark.parametrize("stride", [1, 5])
+def test_one_loop_ends_at_the_bits_of_steps_and_looks_in_turns(stride: int) -> None:
+    grasp = t_shape()
+    scene, starts = (
+        grasp.scene(),
+        starts_near(grasp, 20, seed=33, opening=1.6, shift=0.06, turn=0.3),
+    )
+    found, record = pushed(scene, starts, stride)
+    begin = scene.start_positions(starts)
+    state, peak = np.zeros((len(starts), 3, 6)), np.zeros(len(starts))
+    state[:, 0] = approached(scene, begin)
+    check = StepCheck.over(scene, begin, stride)
+    plant, room, most = plant_of(scene), empty_room(), scene.config.computed_contacts
+    running = np.arange(len(starts))
+    while len(running):
+        running = running[go_on(running, plant, room, most, stride, state, peak)]
+        running = check.observe(running, state[:, 0], state[:, 1])
+        assert (check.ending[running] == RUNNING).all()
+    assert np.array_equal(found.positions, state[:, 0])
+    assert np.array_equal(found.velocities, state[:, 1])
+    assert np.array_equal(found.peak_force, peak)
+    for name in ("steps", "ending", "touches", "penetration_max", "sigma_rise_max"):
+        assert np.array_equal(getattr(record, name), getattr(check, name)), name
+    assert check.steps.min() > 20
 
 
 @pytest.mark.parametrize(

@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Generator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
+import pyarrow as pa
 import pytest
 
 from experiments.environment import ROOT
 from experiments.io import cluster as clusters
+from experiments.io.arrow_bytes import bytes_of
 from experiments.io.cluster import ClusterError
 from experiments.study.run import cluster
-from experiments.study.run.cluster import on_cluster, run_remote
+from experiments.study.run.cluster import on_cluster, run_remote, shard_in
+from experiments.study.run.document import study_of
 from experiments.study.run.folder import StudyFolder
+from experiments.study.run.shards import shard_table
 from tests.experiments.study.studies import Studied, left_alone
 
 distributed = pytest.importorskip("distributed")
@@ -161,7 +167,7 @@ def test_a_shard_that_kills_every_worker(
     study: Studied, started: Any, monkeypatch: pytest.MonkeyPatch
 ):
     there = started(1, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
-    monkeypatch.setattr(cluster, "run_remote", lambda text, span: os._exit(1))
+    monkeypatch.setattr(cluster, "run_remote", lambda text, asked: os._exit(1))
     result = study.run("--scheduler", there.address, "--shard", "1000")
     assert result.code == 2
     line = "icage: error: workers died while they ran trials 0 to 119, 1 of them; what is done"
@@ -186,18 +192,82 @@ def test_a_worker_that_came_late_is_refused_too(folder: Path):
     document = left_alone(folder).document
     document["versions"]["numba"] = "0.1"
     with pytest.raises(ClusterError, match=r"a worker has numba .* instead of 0\.1"):
-        run_remote(json.dumps(document), (0, 3))
+        run_remote(json.dumps(document), "[0, 3]")
 
 
 def test_a_remote_shard_is_the_same(folder: Path):
     done = left_alone(folder)
-    table = run_remote(json.dumps(done.document), (7, 11))
+    table = answered(run_remote(json.dumps(done.document), "[7, 11]"), done, (7, 11))
     assert table.equals(done.table.slice(7, 5))
+
+
+def answered(data: Any, done: Studied, span: tuple[int, int]) -> Any:
+    """What the client makes of the bytes of a shard of 7 to 11."""
+    study = study_of(done.document)
+    return shard_in(data, shard_table(study, (0, -1)).schema, study, span)
+
+
+class _Trap:
+    """What an evil worker would send: opened by pickle, it would run."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return pytest.fail, ("it was unpickled",)
+
+
+def changed(table: Any, name: str, value: Any) -> Any:
+    at = table.column_names.index(name)
+    column = table[name].to_pylist()
+    column[2] = value
+    field = table.schema.field(at)
+    return table.set_column(at, field, pa.array(column, field.type))
+
+
+@pytest.mark.parametrize(
+    ("send", "words"),
+    [
+        (lambda table: table, "Table instead of bytes"),
+        (lambda _: pickle.dumps(_Trap()), "no Arrow table"),
+        (lambda _: b"", "no Arrow table"),
+        (lambda table: bytes_of(table)[:-700], "no Arrow table"),
+        (lambda _: bytes(2 << 20), "2097152 bytes for 5 rows"),
+        (lambda table: bytes_of(table.drop_columns(["steps"])), "columns are others"),
+        (lambda table: bytes_of(table.slice(1)), "4 rows instead of 5"),
+        (lambda table: bytes_of(changed(table, "trial", 8)), "trials are others"),
+        (lambda table: bytes_of(changed(table, "outcome", "\x1b[2J")), "outcomes are none"),
+        (lambda table: bytes_of(changed(table, "outline_scale", 1.0)), "not what the study draws"),
+    ],
+)
+def test_what_a_worker_sends_is_not_believed(folder: Path, send: Any, words: str):
+    done = left_alone(folder)
+    shard = done.table.slice(7, 5)
+    assert answered(bytes_of(shard), done, (7, 11)).equals(shard)
+    with pytest.raises(ValueError, match=words):
+        answered(send(shard), done, (7, 11))
+
+
+def test_a_worker_with_other_code_is_refused_unless_any_will_do(folder: Path):
+    document = left_alone(folder).document
+    document["versions"]["code"] = "icage-0 sim-0 experiments-0"
+    with pytest.raises(
+        ClusterError, match=r"a worker has code icage-\w+ .* instead of icage-0 sim"
+    ):
+        run_remote(json.dumps(document), "[0, 3]")
+    assert run_remote(json.dumps({**document, "any_code": True}), "[0, 3]")
+
+
+def test_nothing_is_waited_for_without_end(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(clusters, "_REMOTE_WAIT", 0.05)
+    with pytest.raises(TimeoutError, match=r"an answer took longer than 0\.05 s"):
+        clusters._in_time("an answer", Event().wait)
+    assert clusters._in_time("an answer", lambda: 3) == 3
+    with pytest.raises(KeyError):
+        clusters._in_time("an answer", lambda: {}["none"])
 
 
 @pytest.mark.parametrize(
     ("address", "words"),
     [
+        ("tls://127.0.0.1:{free}", "does not answer: "),
         ("tcp://127.0.0.1:{free}", "does not answer: "),
         ("tcp://no-such-host.invalid:8786", "does not answer: "),
         ("somewhere", "tcp://HOST:PORT is needed"),
@@ -221,6 +291,28 @@ def test_somebody_else_listens_there(study: Studied, monkeypatch: pytest.MonkeyP
         begun = time.monotonic()
         assert "does not answer: " in study.run("--scheduler", address).error_line()
         assert time.monotonic() - begun < 15.0
+
+
+@pytest.mark.parametrize("rubbish", [b"HTTP/1.1 400 Bad\r\n\r\n", b"\xff" * 4096, b"\0" * 64])
+def test_what_listens_there_answers_rubbish(
+    study: Studied, monkeypatch: pytest.MonkeyPatch, rubbish: bytes
+):
+    monkeypatch.setattr(clusters, "_SCHEDULER_WAIT", 2)
+    with closing(socket.create_server(("127.0.0.1", 0))) as server:
+
+        def serve() -> None:
+            with suppress(OSError):
+                while True:
+                    one, _ = server.accept()
+                    one.sendall(rubbish)
+                    one.close()
+
+        Thread(target=serve, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        begun = time.monotonic()
+        assert "does not answer: " in study.run("--scheduler", address).error_line()
+        assert time.monotonic() - begun < 30.0
+        assert not study.path.exists()
 
 
 def test_without_dask(study: Studied, monkeypatch: pytest.MonkeyPatch):

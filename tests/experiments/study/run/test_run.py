@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from experiments.io.intervals import stopped_at
+from experiments.io.parquet_files import words_of, write_table
 from experiments.study.run import shards as run
 from experiments.study.run.folder import StudyFolder
 from tests.experiments.commands.runner import here
@@ -226,6 +227,26 @@ def test_other_versions_are_refused(study: Studied, named: bool):
     assert "another study: mujoco was 4.0.7, is" in again.error_line()
 
 
+def test_other_code_of_the_same_version_is_refused_or_said(study: Studied):
+    """Its shards are this study's all the same: nothing is run twice."""
+    assert study.run("--trials", "20").code == 0
+    before, document = study.table, study.document
+    mine, old = document["versions"]["code"], "icage-0000000000 sim-0 experiments-0"
+    document["versions"]["code"] = old
+    (study.path / "study.json").write_text(json.dumps(document))
+    line = study.resume().error_line()
+    assert f"another study: code was {old}, is {mine} (--any-code goes on all the same" in line
+    assert study.resume("--any-code", "--trials", "25").code == 0
+    assert study.table.slice(0, 20).equals(before)
+    assert (study.document["versions"]["code"], study.document["other_code"]) == (mine, [old])
+    assert (
+        f"Rows of other code of the same version were taken: {old}."
+        in (study.path / "results.md").read_text()
+    )
+    assert study.resume("--trials", "30").code == 0  # what was said is said on
+    assert study.document["other_code"] == [old]
+
+
 def test_another_case_is_refused(study: Studied):
     assert study.run("--trials", "20").code == 0
     path, case = t_file(study.path.parent), t_case()
@@ -376,7 +397,8 @@ def test_a_false_record_is_told(study: Studied, capsys: Any):
     table = pq.read_table(path)
     steps = table["steps"].to_pylist()
     at = table.column_names.index("steps")
-    pq.write_table(table.set_column(at, "steps", [[steps[0] + 1, *steps[1:]]]), path)
+    other = table.set_column(at, "steps", [[steps[0] + 1, *steps[1:]]])
+    write_table(other, path, words_of(table))
     result = here(capsys, "replay-trial", str(study.path), "0")
     assert result.code == 1
     assert "same versions, but steps differ" in result.err

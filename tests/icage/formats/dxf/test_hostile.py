@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from icage.errors import FormatError
+from icage.errors import FormatError, InputError
+from tests.fuzz.seeds.drawings import dxf
 from tests.icage.formats.dxf.documents import box, by_hand, line, new, read
 from tests.icage.formats.traced_files import refused
 
@@ -77,6 +78,42 @@ def test_it_is_refused_in_one_line(tmp_path: Path, content: str | bytes, why: st
     with pytest.raises(FormatError, match=why) as caught:
         read(tmp_path, content, unit="mm")
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("spoil", ["lost", "nan"])
+def test_any_tag_of_an_entity_may_be_spoiled(tmp_path: Path, spoil: str):
+    """An answer or a refusal, whichever attribute it is and whatever ezdxf makes of it."""
+    written = dxf()[-1].decode()
+    entities = written.partition("ENTITIES\n")[2].partition("  0\nENDSEC")[0]
+    lines = with_blocks(block("B", circle("2")), entities).splitlines()
+    first = lines.index("ENTITIES")
+    refusals: list[str] = []
+    for at in range(first + 1, lines.index("ENDSEC", first) - 1, 2):
+        new = [] if spoil == "lost" else [lines[at], spoil]
+        content = "\n".join([*lines[:at], *new, *lines[at + 2 :]]) + "\n"
+        try:
+            read(tmp_path, content, unit="mm", pick="largest")
+        except InputError as error:
+            refusals.append(str(error))
+    assert len(refusals) > 5
+    assert not any("\n" in said for said in refusals)
+
+
+@pytest.mark.parametrize("kind", ["ENDBLK", "BLOCK", "TABLE", "ENDTAB", "VERTEX", "SEQEND", "EOF"])
+def test_what_is_no_entity_among_entities(tmp_path: Path, kind: str):
+    content = by_hand(box() + f"0\n{kind}\n8\n0\n" + box(3, 2))
+    try:
+        found = read(tmp_path, content, unit="mm", pick="largest").outline.area
+    except FormatError as error:
+        found = str(error)
+    assert found == pytest.approx(800.0) or "\n" not in str(found)
+
+
+def test_an_insertion_of_no_block_is_refused(tmp_path: Path):
+    content = with_blocks(block("A", box()), "0\nINSERT\n8\n0\n10\n0\n20\n0\n" + box())
+    with pytest.raises(FormatError, match="name has to be a string"):
+        read(tmp_path, content, unit="mm")
 
 
 def test_an_external_reference_is_refused(tmp_path: Path):

@@ -109,6 +109,7 @@ def test_geojson_named_json_is_told_from_a_case(tmp_path: Path):
         load(path)
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("name", "text", "why"),
     [
@@ -116,6 +117,13 @@ def test_geojson_named_json_is_told_from_a_case(tmp_path: Path):
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1))", "do not form a closed"),
         ("a.wkt", "POLYGON ((0 0, 1 0, nan 1, 0 0))", "not finite"),
         ("a.wkt", "POLYGON ((0 0, 1e308 0, 1e308 1e308, 0 0))", "beyond 1e"),
+        ("a.wkt", "POLYGON ((0 0, 9e200 9e200, 9e200 0, 0 9e200, 0 0))", "beyond 1e"),
+        (
+            "a.geojson",
+            '{"type": "Polygon", "coordinates": [[[0, 0], [9e200, 9e200], [9e200, 0], '
+            "[0, 9e200], [0, 0]]]}",
+            "beyond 1e",
+        ),
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0)", "cut off"),
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0)))", "closes a bracket"),
         ("a.wkt", "GEOMETRYCOLLECTION (" * 100_000, "more than 50 deep"),

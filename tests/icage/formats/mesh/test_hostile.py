@@ -36,10 +36,21 @@ def ply(vertices: int | str, faces: int, body: str = "") -> str:
 THREE = "0 0 0\n1 0 0\n0 1 0\n"
 
 
+SIGNALLING = np.array([0x7FA00000], dtype="<u4").tobytes()
+"""A NaN that sets the processor's flag when it is made a double."""
+
+
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("name", "content", "why"),
     [
         ("a.stl", stl_of(np.full((4, 3, 3), np.nan)), "not finite"),
+        ("a.stl", bytes(80) + struct.pack("<I", 1) + bytes(12) + 9 * SIGNALLING + bytes(2),
+         "not finite"),
+        ("a.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+         b"property float y\nproperty float z\nelement face 1\nproperty list uchar float "
+         b"vertex_index\nend_header\n" + 3 * SIGNALLING + b"\x03" + 3 * SIGNALLING,
+         "not there|not finite"),
         ("a.stl", stl_of(np.random.default_rng(0).random((4, 3, 3)) * 3e38), "beyond 1e"),
         ("a.stl", stl_of(np.zeros((4, 3, 3))), "no area along this axis"),
         ("a.stl", stl_of(np.zeros((0, 3, 3))), "no triangles"),
@@ -53,6 +64,10 @@ THREE = "0 0 0\n1 0 0\n0 1 0\n"
         ("a.stl", "solid a\n" + FACET.format(1)[:-40] + "\nendsolid", "every facet needs three"),
         ("a.stl", "solid a\n" + FACET.format(1).replace("vertex 1 0 0", "vertex 1 0") + "endsolid",
          "every facet needs three|not three numbers"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("list uchar int v", "int v"), "no list"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", ""), "and no lists"),
+        ("a.ply", ply(3, 1, THREE + "3 0 1 2\n").replace("element face 1\n", "").replace(
+            "ascii", "binary_little_endian"), "and no lists"),
         ("a.obj", "v 0 0 0\nf 1 2 9\n", "a vertex that is not there"),
         ("a.obj", "v 0 0 0\nf 0 1 1\n", "'0' is no vertex"),
         ("a.obj", "v 0 0 0\nf -2 1 1\n", "'-2' is no vertex"),

@@ -1,0 +1,79 @@
+"""The page as a widget of a notebook: the same module, and the placement in both directions."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+from collections.abc import Sequence
+from typing import Any, Final
+
+from experiments.explore.document import explore_document
+from experiments.explore.page_html import module_text, style_text
+from icage.cage import Cage
+from icage.cells.query_tables import query_tables
+from icage.errors import InputError
+from icage.formats.json_out import json_text
+from icage.friction.levels import JamTolerance, friction_levels
+
+_RENDER: Final = """
+export default {
+  render({ model, el }) {
+    el.classList.add("icage");
+    let told = null;
+    const placed = ({ x, y, theta, sigma }) => {
+      told = [x, y, theta, sigma];
+      model.set("placement", told);
+      model.save_changes();
+    };
+    const page = mount(el, model.get("document"), { placed });
+    model.on("change:placement", () => {
+      const [x, y, theta, sigma] = model.get("placement");
+      if (told?.join() !== [x, y, theta, sigma].join()) page.place({ x, y, theta, sigma });
+    });
+  },
+};
+"""
+
+
+def explore_widget(cage: Cage, mus: Sequence[float] = ()) -> Any:
+    """A widget that shows a cage: drag, turn and open the hand in Jupyter, marimo or VS Code.
+
+    Its trait ``placement`` is [x, y, theta, sigma] of the hand as it stands, to observe and to set:
+    ``cage.query(widget.placement)`` says what the page says.
+
+    Parameters
+    ----------
+    cage:
+        Planned by the cells.
+    mus:
+        [1] Coefficients of friction for the slider, point fingers only.
+
+    Raises
+    ------
+    InputError:
+        anywidget is not installed; as ``experiments.explore.run.write_page``.
+    """
+    try:
+        anywidget, traitlets = map(importlib.import_module, ("anywidget", "traitlets"))
+    except ImportError as error:
+        raise InputError(
+            "the widget needs anywidget, which is not installed: pip install 'icage[notebook]'"
+        ) from error
+    tolerance = JamTolerance()
+    friction = friction_levels(cage, sorted(set(mus)), tolerance) if mus else ()
+    tables = query_tables(cage, os.cpu_count() or 1)
+    name = cage.name or "object"
+    document = explore_document(cage, tables, name, cage.unit, friction, tolerance)
+    made = type(
+        "ExploreWidget",
+        (anywidget.AnyWidget,),
+        {
+            "_esm": module_text() + _RENDER,
+            "_css": style_text(),
+            "document": traitlets.Dict().tag(sync=True),
+            "placement": traitlets.List(traitlets.Float()).tag(sync=True),
+        },
+    )
+    start = cage.target_placement.as_array().tolist()
+    return made(document=json.loads(json_text(document)), placement=start)

@@ -1,0 +1,1 @@
+"""Kernels of the true curve of disc fingers: features, forces on them, Newton's method."""

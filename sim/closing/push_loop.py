@@ -1,0 +1,61 @@
+"""Computed steps and looks in one compiled loop, closing after closing.
+
+Numba's cache on disk notices a change of the file that a loop is in, and of no other. What is
+called here is written elsewhere, so the text of those files is part of what the loop is made of.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from icage.arrays import FloatArray, IntArray
+from sim.closing import computed_step, look
+from sim.closing.computed_step import Plant, Room, goes_on
+from sim.closing.look import Bounds, Record, Shape, look_at
+from sim.world import hand_in_object
+
+
+def _text() -> str:
+    """A digest of the files that the loop calls."""
+    digest = hashlib.sha256()
+    for module in (computed_step, look, hand_in_object):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return digest.hexdigest()
+
+
+def _loop(text: str) -> Callable[..., None]:
+    """The loop; ``text`` is in its closure, which the cache compares."""
+
+    @njit(cache=True)
+    def loop(
+        ids: IntArray,
+        plant: Plant,
+        room: Room,
+        most: int,
+        state: FloatArray,
+        peak: FloatArray,
+        shape: Shape,
+        bounds: Bounds,
+        record: Record,
+    ) -> None:  # pragma: no cover - compiled
+        if len(text) == 0:
+            return
+        ahead, fingers, depth = np.empty((3, 6)), np.empty((3, 2)), np.empty(3)
+        for i in ids:
+            while goes_on(i, plant, room, most, bounds.stride, ahead, state, peak):
+                if not look_at(i, state[i, 0], state[i, 1], fingers, depth, shape, bounds, record):
+                    break
+
+    compiled: Any = loop
+    return compiled
+
+
+close_on = _loop(_text())
+"""Close ``ids`` as far as steps can be computed and none has ended: ``goes_on`` and ``look_at`` in
+turn, each closing by itself. Updates ``state`` (N, 3, 6), ``peak`` (N,) and the record."""

@@ -1,0 +1,1 @@
+"""Whole inputs of every format, small, from which mutations begin."""
