@@ -40,9 +40,9 @@ TOOLS = {
 """The grasps by point fingers that `icage grasps` lists first, [mm]."""
 
 FEW = range(63)
-MANY = range(63, 700)
+MANY = range(63, 213)
 FEW_DISCS = range(14, 26)
-MANY_DISCS = range(26, 240)
+MANY_DISCS = range(26, 226)
 
 
 def wrong(seeds: range) -> dict[int, Compared]:
