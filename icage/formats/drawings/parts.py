@@ -15,6 +15,7 @@ from icage.formats.drawings.crossings import MAX_OVERLAPS, check_crossings
 from icage.formats.drawings.drawing import Drawing, Line, Shape
 from icage.formats.drawings.ends import where_loose
 from icage.formats.drawings.reading import BY_ID, LARGEST, Reading
+from icage.near_touch import near_touch
 from icage.outline import LARGEST_COORDINATE
 
 FLATTEN: Final = 0.02
@@ -25,6 +26,9 @@ _RECTANGLE: Final = 1.0 - 1e-9
 
 MAX_PARTS: Final = 3_000
 """Separate areas, before those that are near to each other are joined."""
+
+_NECKS: Final = 100
+"""Necks of a part that are widened at most; an outline with more is refused."""
 
 _SHOWN: Final = 6
 """Names or areas told at most."""
@@ -244,6 +248,7 @@ def _joined(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
                 shapely.buffer(rounds, -half, quad_segs=4),
             )
             members = _linked(_of_members([closed, *members], members), tolerance)
+            members = [_with_wide_necks(member, tolerance) for member in members]
         joined += members
     return joined
 
@@ -269,6 +274,18 @@ def _linked(parts: list[shapely.Polygon], tolerance: float) -> list[shapely.Poly
         if i < j
     ]
     return _polygons(shapely.union_all([*parts, *links]))
+
+
+def _with_wide_necks(part: shapely.Polygon, tolerance: float) -> shapely.Polygon:
+    """Where parts are joined by a neck of rounding's width, a link makes it one that holds."""
+    for _ in range(_NECKS):
+        ring = shapely.get_coordinates(part.exterior)[:-1]
+        found = near_touch(ring, size(part))
+        if found is None:
+            break
+        link = shapely.buffer(shapely.Point(ring[found.vertex]), tolerance / 4.0, quad_segs=2)
+        part = max(_polygons(shapely.union(part, link)), key=lambda one: one.area)
+    return part
 
 
 def _picked(

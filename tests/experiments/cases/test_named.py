@@ -97,7 +97,7 @@ def test_a_study_knows_the_same_names(tmp_path: Path):
 
 
 def test_nobody_else_decides_it():
-    """Files that look into the models: the one that decides, and two that list what there is."""
+    """Files that look into the models: the one that decides, and three that list what there is."""
     looking = {
         str(path.relative_to(ROOT))
         for package in ("icage", "sim", "experiments")
@@ -107,6 +107,7 @@ def test_nobody_else_decides_it():
     }  # fmt: skip
     assert looking == {
         "icage/formats/load.py",
+        "experiments/jams/__main__.py",
         "experiments/regress/cases.py",
         "experiments/study/ready/__main__.py",
     }

@@ -6,10 +6,17 @@ import json
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 
-from experiments.replay.recorded_trial import _COLUMNS, JSON, TRIALS, RecordingError, read_trial
+from experiments.io.parquet_files import write_table
+from experiments.replay.recorded_trial import (
+    _COLUMNS,
+    JSON,
+    TABLE_FORMAT,
+    TRIALS,
+    RecordingError,
+    read_trial,
+)
 
 
 @pytest.mark.parametrize("missing", _COLUMNS)
@@ -17,6 +24,6 @@ def test_a_missing_column_is_named(tmp_path: Path, missing: str) -> None:
     document = {"format": "icage-replay/1", "versions": {}, "runs": []}
     (tmp_path / JSON).write_text(json.dumps(document))
     columns = {name: [0] for name in _COLUMNS if name != missing}
-    pq.write_table(pa.table(columns), tmp_path / TRIALS)
+    write_table(pa.table(columns), tmp_path / TRIALS, {b"format": TABLE_FORMAT})
     with pytest.raises(RecordingError, match=f"has no column '{missing}'"):
         read_trial(tmp_path, 0)
