@@ -85,7 +85,9 @@ def placement_figure(cage: Cage, best: BestPlacement, name: str, unit: str) -> F
     FigureCanvasAgg(figure)
     _draw_hand(figure.add_axes(_HAND), cage, best, unit)
     _draw_curve(figure.add_axes(_CURVE), best, unit)
-    figure.text(0.02, 0.945, name, fontsize=9.5, fontweight="bold", color=INK, va="center")
+    figure.text(
+        0.02, 0.945, name, fontsize=9.5, fontweight="bold", color=INK, va="center", parse_math=False
+    )  # fmt: skip
     figure.text(0.02, 0.89, _words(cage, best, unit), fontsize=8.0, color=INK, va="center")
     return figure
 

@@ -49,6 +49,11 @@ class JamSearch:
             first = np.inf if cage.sigma_first is None else cage.sigma_first
             self.known = float(first * (1.0 - 2.0 * LEVEL))
 
+    @property
+    def sigma_0(self) -> float:
+        """[unit] Of the target."""
+        return self._cage.sigma_0
+
     def near(self, tolerance: JamTolerance) -> Near:
         """The hands that count as the target, in the frame of the pieces."""
         return self.within(tolerance.position, tolerance.angle)

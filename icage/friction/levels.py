@@ -125,4 +125,6 @@ def limited(search: JamSearch, level: FrictionLevel) -> FrictionLevel:
     least = search.least(level.mu, search.near(level.tolerance), below)
     if not np.isfinite(least.sigma):
         return level
-    return replace(level, sigma_first=float(least.sigma), jam=search.jam(least))
+    # within rounding of the target no hand of the set is smaller than it
+    sigma = max(float(least.sigma), search.sigma_0)
+    return replace(level, sigma_first=sigma, jam=search.jam(least))

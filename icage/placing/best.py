@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+import shapely
 
 from icage.arrays import FloatArray, IntArray, read_only
 from icage.cage import Cage
@@ -20,7 +21,7 @@ from icage.cells.work import CageWork, work_of
 from icage.checks import a_number, an_instance
 from icage.errors import GeometryError, GraspError, InputError
 from icage.geometry.near_frame import NearFrame
-from icage.hand import Placement
+from icage.hand import HandShape, Placement
 from icage.placing.kernels.edges import near_edges
 from icage.placing.kernels.search import Asked, Deepest, deepest
 from icage.placing.turn_and_shift import TurnAndShift
@@ -195,7 +196,7 @@ def _deepest(
         least=cage.sigma_0 if size is None else size,
         top=top,
         level=bound,
-        errs=bool(errs) and np.isfinite(bound),
+        share=_around(cage.hand) if errs and np.isfinite(bound) else 0.0,
         gap=gap,
         floor=COLLISION * cage.outline.diameter,
     )
@@ -241,7 +242,7 @@ def _answer(
     if query(cage, placement.as_array()[None]).verdict[0] != TARGET:
         raise GeometryError(f"the best placement {placement} is not in the guaranteed set")
     capped = errs and level is not None
-    room = 0.5 * (level - sigma) if capped and level is not None else np.inf
+    room = _around(cage.hand) * (level - sigma) if capped and level is not None else np.inf
     clear = found.value if room > found.value else _clearance(cage, fingers)
     return BestPlacement(
         placement=placement,
@@ -257,6 +258,14 @@ def _answer(
         turn_and_shift=TurnAndShift(cage.outline.vertices, fingers, cage.finger_radius),
         boxes=int(found.boxes),
     )
+
+
+def _around(hand: HandShape) -> float:
+    """Radius of the least circle round the unit hand: fingers that are off by r, the shape kept,
+    change the hand's size by r over it at most.
+    """
+    fingers = np.column_stack([hand.z.real, hand.z.imag])
+    return float(shapely.minimum_bounding_radius(shapely.MultiPoint(fingers)))
 
 
 def _clearance(cage: Cage, fingers: FloatArray) -> float:

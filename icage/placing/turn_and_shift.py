@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.arrays import BoolArray, ComplexArray, FloatArray, read_only
+from icage.checks import a_number
 
 _HALVINGS = 100
 """Of the angle that is searched: more than a double has digits."""
@@ -44,7 +45,13 @@ class TurnAndShift:
 
         [rad] and [unit]; exact up to rounding: arcs and edges are nearest at their ends, where an
         edge's normal meets the pivot, or where a corner lies on the ray of a finger.
+
+        Raises
+        ------
+        InputError:
+            The turn is no finite number.
         """
+        turn = a_number(turn, "turn")
         return max(0.0, self._clear_of_arcs(min(abs(turn), math.pi)) - self.radius)
 
     @property
@@ -54,6 +61,7 @@ class TurnAndShift:
 
     def turn_at(self, shift: float) -> float:
         """[rad] The turn either way that is borne with every shift up to ``shift``; pi: any."""
+        shift = a_number(shift, "shift")
         if self.shift_at(math.pi) >= shift and self.shift_at(math.pi) > 0.0:
             return math.pi
         low, high = 0.0, math.pi

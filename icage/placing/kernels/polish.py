@@ -27,18 +27,18 @@ _NARROWER = 0.3
 
 
 @compiled_borrowing
-def capped(clear, sigma, level, errs):
+def capped(clear, sigma, level, share):
     """The tolerance of a hand with this clearance: capped by the level if the opening errs."""
-    return min(clear, 0.5 * (level - sigma)) if errs else clear
+    return min(clear, share * (level - sigma)) if share > 0.0 else clear
 
 
 @compiled_borrowing
-def level_row(program, rows, level, middle, half):
+def level_row(program, rows, level, share, middle, half):
     """The row of the cap; returns how many rows there are then."""
     program.counts[rows] = 1.0
-    program.offset[rows] = 0.5 * (level - middle[3])
+    program.offset[rows] = share * (level - middle[3])
     for j in range(UNKNOWNS):
-        program.slope[rows, j] = -0.5 * half[3] if j == SIZE else 0.0
+        program.slope[rows, j] = -share * half[3] if j == SIZE else 0.0
     return rows + 1
 
 
@@ -73,8 +73,8 @@ def polish(asked, every, hand, value, program, room):
             program, 0, edges, near, every, arm, asked.radius, middle, half, True, room.finger,
             room.pick,
         )  # fmt: skip
-        if asked.errs:
-            rows = level_row(program, rows, asked.level, middle, half)
+        if asked.share > 0.0:
+            rows = level_row(program, rows, asked.level, asked.share, middle, half)
         most_of_least(program, rows, -np.inf)
         for j in range(4):
             other[j] = middle[j] + program.at[j] * half[j]
@@ -87,7 +87,7 @@ def polish(asked, every, hand, value, program, room):
             place_finger(arm, k, other, room.finger)
             moved = max(moved, np.hypot(room.finger[0] - x, room.finger[1] - y))
         found = clearance(edges, near, every, arm, asked.radius, other, room.finger)
-        better = capped(found, other[3], asked.level, asked.errs)
+        better = capped(found, other[3], asked.level, asked.share)
         if better > value and moved < clear:
             value = better
             clear = found

@@ -53,8 +53,9 @@ class Asked(NamedTuple):
         [unit] Of the fingers; diameter of the object.
     least, top:
         [unit] Sizes that the hand may have.
-    level, errs:
-        [unit] The level of the set, and whether the opening may err up to it.
+    level, share:
+        [unit] The level of the set; [1] how much of the way up to it the fingers may be off, 0 if
+        the opening does not err: the radius of the least circle round the unit hand.
     gap, floor:
         [1] By how much the bound may exceed the best; [unit] a tolerance that counts as none.
     """
@@ -67,7 +68,7 @@ class Asked(NamedTuple):
     least: float
     top: float
     level: float
-    errs: bool
+    share: float
     gap: float
     floor: float
 
@@ -269,7 +270,7 @@ def deepest(pieces, z, cells, least, asked, limit):
             if misses_cell(pieces, cell, asked.arm, middle, half, room.finger):
                 continue
             bar = max(asked.floor, value * (1.0 + asked.gap))
-            bound = min(parent, capped(np.inf, middle[3] - half[3], asked.level, asked.errs))
+            bound = min(parent, capped(np.inf, middle[3] - half[3], asked.level, asked.share))
             reach = 0.0
             bent = 0.0
             for k in range(fingers):
@@ -288,8 +289,8 @@ def deepest(pieces, z, cells, least, asked, limit):
                     program, 0, asked.edges, asked.near, cell, asked.arm, asked.radius, middle,
                     half, False, room.finger, room.pick,
                 )  # fmt: skip
-                if asked.errs:
-                    rows = level_row(program, rows, asked.level, middle, half)
+                if asked.share > 0.0:
+                    rows = level_row(program, rows, asked.level, asked.share, middle, half)
                 rows = piece_rows(program, rows, pieces, cell, asked.arm, middle, half, room.finger)
                 bound = min(bound, most_of_least(program, rows, bar))
                 tries = 2
@@ -307,7 +308,7 @@ def deepest(pieces, z, cells, least, asked, limit):
                 found = clearance(
                     asked.edges, asked.near, cell, asked.arm, asked.radius, room.other, room.finger
                 )
-                found = capped(found, room.other[3], asked.level, asked.errs)
+                found = capped(found, room.other[3], asked.level, asked.share)
                 if found > value:
                     value = found
                     for j in range(4):

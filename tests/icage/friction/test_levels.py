@@ -109,7 +109,9 @@ def test_a_jam_lies_outside_the_tolerance_and_is_as_wide_as_the_level() -> None:
             for found in friction_levels(cage, MUS, allowed):
                 if found.jam is None:
                     continue
-                assert found.jam.sigma == found.sigma_first
+                # the target itself, where nothing is allowed: a hair smaller, by thick features
+                assert found.sigma_first == max(found.jam.sigma, cage.sigma_0)
+                assert found.jam.sigma >= cage.sigma_0 * (1.0 - 1e-9)
                 place = found.jam.placement
                 assert place.sigma == pytest.approx(found.jam.sigma, rel=1e-12)
                 shift = found.jam.contacts.mean(axis=0) - cage.contacts.mean(axis=0)

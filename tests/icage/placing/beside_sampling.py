@@ -147,7 +147,10 @@ def _values(cage: Cage, rows: FloatArray, level: float | None, errs: bool) -> Fl
     """(n,) tolerances; -inf outside the set."""
     values = clearances(cage, rows)
     if errs and level is not None:
-        values = np.minimum(values, 0.5 * (level - rows[:, 3]))
+        around = shapely.minimum_bounding_radius(
+            shapely.MultiPoint(np.column_stack([cage.hand.z.real, cage.hand.z.imag]))
+        )
+        values = np.minimum(values, around * (level - rows[:, 3]))
     return np.where(in_set(cage, rows, level) & (values > 0.0), values, -np.inf)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 
 import icage
 from icage.cage import Cage
@@ -44,17 +45,18 @@ def test_the_triangle_at_a_known_opening(opening: float) -> None:
 
 
 def test_the_triangle_with_the_opening_free_or_erring() -> None:
-    """(2 s - 1) / (2 sqrt 3) = (sqrt 3 / 2 - s) / 2 where both balance."""
+    """(2 s - 1) / (2 sqrt 3) = (sqrt 3 / 2 - s) / sqrt 3 where both balance: the least circle round
+    the unit hand has the radius 1 / sqrt 3."""
     free = icage.place(triangle())
     assert free.tolerance == pytest.approx((ROOT - 1.0) / (2.0 * ROOT), rel=1e-7)
     assert free.placement.sigma < 0.5 * ROOT
-    size = (0.5 * ROOT + 1.0 / ROOT) / (1.0 + 2.0 / ROOT)
+    size = 0.25 * (ROOT + 1.0)
     errs = icage.place(triangle(), opening_error=True)
     assert errs.placement.sigma == pytest.approx(size, rel=1e-6)
-    assert errs.tolerance == pytest.approx(0.5 * (0.5 * ROOT - size), rel=1e-6)
+    assert errs.tolerance == pytest.approx((0.5 * ROOT - size) / ROOT, rel=1e-6)
     assert errs.limited_by == "level"
     known = icage.place(triangle(), opening=0.85, opening_error=True)
-    assert known.tolerance == pytest.approx(0.5 * (0.5 * ROOT - 0.85), rel=1e-6)
+    assert known.tolerance == pytest.approx((0.5 * ROOT - 0.85) / ROOT, rel=1e-6)
 
 
 def test_friction_lowers_the_level() -> None:
@@ -167,3 +169,34 @@ def test_misplaced_hands(errs: bool) -> None:
     mean = cage.hand.fingers(inside).mean(axis=0) - best.fingers
     assert np.abs(mean).max() < 0.1 * r
     assert bool((inside[:, 3] == best.placement.sigma).all()) != errs
+
+
+def test_whichever_finger_is_called_the_first() -> None:
+    """The tolerance is of the hand, not of its labels: with an error of the opening, too."""
+    case = icage.load(CASES / "tunnel_golden.json")
+    found = [
+        icage.place(icage.plan(case.outline, np.roll(case.contacts, k, axis=0)), opening_error=True)
+        for k in range(3)
+    ]
+    for best in found[1:]:
+        # each is within a thousandth of the true best one
+        assert best.tolerance == pytest.approx(found[0].tolerance, rel=2e-3)
+    assert min(b.tolerance_upper for b in found) >= max(b.tolerance for b in found)
+
+
+def test_errors_that_reach_the_level_and_no_further() -> None:
+    """All fingers off by the tolerance, away from the middle of the least circle round them."""
+    cage = icage.plan(icage.load("pliers"))
+    best = icage.place(cage, opening_error=True)
+    assert best.limited_by == "level"
+    assert best.level is not None
+    fingers = best.fingers
+    circle = shapely.minimum_bounding_circle(shapely.MultiPoint(fingers))
+    middle = np.array([circle.centroid.x, circle.centroid.y])
+    around = shapely.minimum_bounding_radius(shapely.MultiPoint(fingers))
+    for share, verdict in ((0.999, "target"), (1.01, None)):
+        grown = middle + (fingers - middle) * (1.0 + share * best.tolerance / around)
+        sigma = float(np.hypot(*(grown[1] - grown[0])))
+        assert (sigma < best.level) == (share < 1.0)
+        if verdict is not None:
+            assert cage.query(icage.Placement.from_contacts(grown)).verdict == verdict
