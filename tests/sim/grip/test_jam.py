@@ -95,6 +95,14 @@ def test_the_measured_threshold_is_the_closed_form(config: SimConfig | None) -> 
     assert found.penetration < 5e-4
 
 
+@pytest.mark.parametrize("degrees", [3.0, 35.0])
+def test_flat_and_steep_wedges(degrees: float) -> None:
+    scene, placement = on_a_wedge(degrees)
+    wanted = math.tan(math.radians(degrees))
+    found = threshold(scene, placement, 0.95 * wanted)
+    assert 0.99 * wanted < found.slips < found.sticks < 1.01 * wanted
+
+
 def test_a_threshold_far_from_the_one_foretold_is_said_to_be_so() -> None:
     scene, placement = on_a_wedge(15.0)
     wanted = math.tan(math.radians(15.0))
