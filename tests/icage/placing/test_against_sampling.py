@@ -14,7 +14,7 @@ from icage.sampling import SamplingError
 from tests.icage.placing.beside_sampling import KINDS, Compared, compared, drawn
 
 FEW = range(42)
-MANY = range(42, 142)
+MANY = range(42, 112)
 
 
 def results(seeds: range, radius: float = 0.0, mu: float = 0.0) -> dict[int, Compared]:

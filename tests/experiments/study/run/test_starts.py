@@ -103,7 +103,9 @@ def test_the_best_placement_has_the_most_room():
         shapely.points(one.cage.hand.fingers(np.array([best, roomy]))), one.cage.outline.polygon
     ).min(axis=1)
     margin = one.cage.sigma_first - np.array([best[3], roomy[3]])
-    room = np.minimum(away - one.cage.finger_radius, 0.5 * margin)
+    z = one.cage.hand.z
+    around = shapely.minimum_bounding_radius(shapely.MultiPoint(np.column_stack([z.real, z.imag])))
+    room = np.minimum(away - one.cage.finger_radius, around * margin)
     assert room[0] == pytest.approx(found.tolerance, rel=1e-6)
     assert room[1] < room[0]
 
