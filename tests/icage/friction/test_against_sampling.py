@@ -42,7 +42,7 @@ TOOLS = {
 FEW = range(63)
 MANY = range(63, 213)
 FEW_DISCS = range(14, 26)
-MANY_DISCS = range(26, 126)
+MANY_DISCS = range(26, 86)
 
 
 def wrong(seeds: range) -> dict[int, Compared]:
