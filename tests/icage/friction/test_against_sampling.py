@@ -40,7 +40,7 @@ TOOLS = {
 """The grasps by point fingers that `icage grasps` lists first, [mm]."""
 
 FEW = range(63)
-MANY = range(63, 213)
+MANY = range(63, 143)
 FEW_DISCS = range(14, 26)
 MANY_DISCS = range(26, 86)
 
