@@ -42,7 +42,9 @@ TOLERANCES: Final[tuple[tuple[str, Tolerance], ...]] = (
     ("shake.", EXACT),
     ("second.", ("share", 0.2)),
     ("friction.sigma_first", ("relative", 1e-6)),
-    ("friction.", EXACT),
+    ("friction.mu", EXACT),
+    ("friction.stray", EXACT),
+    ("friction.", ("share", 0.05)),
 )
 """By the beginning of a key, first match; a key that none matches must be equal."""
 
