@@ -22,6 +22,7 @@ from sim.closing.step_check import DIVERGED, PINCHED, SETTLED, TIMED_OUT
 from sim.grip.jam import held_by_engine, residual
 from sim.grip.stick import RUBBING, moved, rubbing
 from sim.world.config import SimConfig
+from sim.world.scene import Scene
 
 Side = Literal["below", "above"]
 SIDES: Final[tuple[Side, ...]] = ("below", "above")
@@ -43,8 +44,8 @@ MEASURED: Final = 3
 """Ends of a run whose nearest jam is looked for: a search each."""
 
 GENTLER: Final = 0.1
-"""[1] Of the drive force, for closings that did not come to rest, or whose hand was pushed open
-past the level: fingers sink in by up to 5e-4 diameters when they strike, in proportion to it."""
+"""[1] Of the drive force, for closings that did not come to rest, or whose hand may have been past
+the level: fingers sink in by up to 5e-4 diameters when they strike, in proportion to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +67,9 @@ class Ends:
         the ends at rest outside the target; nan for the others.
     repeated:
         How many closed again, for ten times as long or at ``GENTLER``; that is what counts of them.
+    near_level:
+        (N,) a finger sank in so deep that the hand may have been past the level. Fingers that are
+        off by p are no wider apart than those of a hand of size sigma + 2 p.
     sunk:
         (N,) fingers that wedge themselves into a corner sink in: deeper than ``DEEPEST_AT_REST``.
     penetration:
@@ -85,11 +89,22 @@ class Ends:
     residual: FloatArray
     to_jam: FloatArray
     repeated: int
+    near_level: BoolArray
     sunk: BoolArray
     penetration: float
 
     def __len__(self) -> int:
         return len(self.starts)
+
+    @property
+    def kept(self) -> BoolArray:
+        """(N,) those that count: below the level whatever fingers sank in."""
+        return ~self.near_level
+
+    @property
+    def lost(self) -> int:
+        """How many of those that count ended outside the target."""
+        return int((self.kept & ~self.in_target).sum())
 
     @property
     def stray(self) -> BoolArray:
@@ -137,7 +152,7 @@ def close_from(
     repeated = np.zeros(len(starts), dtype=np.bool_)
     longer = replace(usual, max_time=LONGEST / GENTLER)
     for patient in (longer, gentler(usual)):
-        open_now = _pushed_open(closed, top)
+        open_now = _near_level(scene, closed, top)
         late = closed.ending == TIMED_OUT
         deep = closed.penetration_rest > DEEPEST_AT_REST
         again = np.flatnonzero(late & ~open_now if patient is longer else late | open_now | deep)
@@ -171,6 +186,7 @@ def close_from(
         residual=off,
         to_jam=away,
         repeated=int(repeated.sum()),
+        near_level=_near_level(scene, closed, top),
         sunk=closed.penetration_rest > DEEPEST_AT_REST,
         penetration=float(closed.penetration_max.max(initial=0.0)),
     )
@@ -186,6 +202,7 @@ def gentler(config: SimConfig) -> SimConfig:
     )
 
 
-def _pushed_open(closed: ClosingOutcomes, top: float) -> BoolArray:
-    """Which hands (N,) were at any step as wide as a level [unit]: they have left what it says."""
-    return closed.sigma_rise_max * closed.start[:, 3] >= top
+def _near_level(scene: Scene, closed: ClosingOutcomes, top: float) -> BoolArray:
+    """Which hands (N,) were at any step as wide as a level [unit], or might as well have been."""
+    widest = closed.sigma_rise_max * closed.start[:, 3]
+    return widest + 2.0 * closed.penetration_max * scene.object.diameter >= top

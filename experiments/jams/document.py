@@ -62,14 +62,17 @@ def _case(row: Judged) -> dict[str, Any]:
 def ends_document(ends: Ends) -> dict[str, Any]:
     """Closings from one side of a level in numbers."""
     beyond = ends.residual[~np.isnan(ends.residual)]
-    there = ends.in_target
+    there = ends.in_target & ends.kept
+    kept = int(ends.kept.sum())
     return {
         "side": ends.side,
         "mu": ends.mu,
-        "trials": len(ends),
-        "from_afar": int(ends.from_afar.sum()),
+        "trials": kept,
+        "near_level": len(ends) - kept,
+        "near_level_in_target": int((ends.in_target & ends.near_level).sum()),
+        "from_afar": int((ends.from_afar & ends.kept).sum()),
         "target": int(there.sum()),
-        "target_rate": wilson(int(there.sum()), len(ends)),
+        "target_rate": wilson(int(there.sum()), kept),
         "settled": int(ends.settled.sum()),
         "repeated": ends.repeated,
         "sunk": int(ends.sunk.sum()),
@@ -151,14 +154,16 @@ def page(document: dict[str, Any], command: str) -> Iterator[str]:
     yield ""
     yield (
         "below: ended within the tolerance of the target (0.005 diameters, 0.02 rad), of those "
-        "that began below sigma_first(mu); afar: began outside that tolerance; above: ended in the "
+        "that began below sigma_first(mu); thin: the same of those that fingers sinking in may "
+        "have carried over it; afar: began outside that tolerance; above: ended in the "
         "target, of those that began above; stray: ended where no forces within the cones balance; "
         "residual: largest left over at an end outside the target, over the drive force; jam: how "
         "far three of those ends are from the nearest planned jam, at most."
     )
     yield ""
-    yield "| case | mu | sigma_first(mu) | below | afar | above | stray | residual | jam | deep |"
-    yield f"|{'---|' * 10}"
+    head = "case", "mu", "sigma_first(mu)", "below", "thin", "afar", "above", "stray"
+    yield f"| {' | '.join((*head, 'residual', 'jam', 'deepest'))} |"
+    yield f"|{'---|' * 11}"
     for case in cases:
         for level in case["levels"]:
             runs = {r["side"]: r for r in case["closings"] if r["mu"] == level["mu"]}
@@ -213,10 +218,12 @@ def _sums(document: dict[str, Any]) -> Iterator[str]:
     low, high = wilson(right, trials)
     most = rate_upper(trials - right, trials)
     afar = sum(r["from_afar"] for r in below)
+    thin, held = (sum(r[key] for r in below) for key in ("near_level", "near_level_in_target"))
     yield (
         f"**{right} of {trials}** closings from below sigma_first(mu) ended in the target (rate "
         f"{low:.5f} to {high:.5f}, Wilson at 95 %; failures under {most:.2g}, Clopper-Pearson); "
-        f"{afar} of them began outside the tolerance."
+        f"{afar} of them began outside the tolerance. {thin} more began so near to the level that "
+        f"fingers sinking in may have carried them over: {held} of them ended in the target."
     )
     out = sum(r["trials"] - r["target"] for r in above)
     worst = max((r["residual"] for r in above), default=0.0)
@@ -252,6 +259,7 @@ def _closing_row(name: str, level: dict[str, Any], runs: dict[str, Any]) -> str:
     cells = (
         name, f"{level['mu']:g}", first,
         "-" if below is None else f"{below['target']}/{below['trials']}",
+        "-" if below is None else f"{below['near_level_in_target']}/{below['near_level']}",
         "-" if below is None else str(below["from_afar"]),
         "-" if above is None else f"{above['target']}/{above['trials']}",
         str(sum(run["stray"] for run in runs.values())),

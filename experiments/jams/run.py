@@ -75,7 +75,7 @@ def judge(
 def _farther(done: Judged, one: Ends) -> Iterator[str]:
     """Ends in the target that are farther from it than they may stop."""
     most = next(level.ends for level in done.levels if level.mu == one.mu)
-    where = one.in_target & one.settled & ~one.sunk
+    where = one.in_target & one.settled & one.kept & ~one.sunk
     position = float(one.position[where].max(initial=0.0))
     angle = float(one.angle[where].max(initial=0.0))
     if position > most.position_max + SOFT[0] or angle > most.angle_max + SOFT[1]:
@@ -121,9 +121,9 @@ def limiting(
 
 def _failures(done: Judged) -> Iterator[str]:
     for one in done.ends:
-        if one.side == "below" and not one.in_target.all():
+        if one.side == "below" and one.lost:
             yield (
-                f"{done.name}: {int(one.in_target.sum())} of {len(one)} closings from below "
+                f"{done.name}: all but {one.lost} of {int(one.kept.sum())} closings from below "
                 f"sigma_first({one.mu:g}) ended in the target (seed {done.seed})"
             )
         if one.side == "below":

@@ -28,8 +28,9 @@ def _checks(row: Row) -> Iterator[str]:
         yield from _closings(closed, "", row.seed)
     for ends in row.rubbed:
         where = f"friction {ends.mu:g}, below sigma_first(mu)"
-        if not ends.in_target.all():
-            yield f"{where}: {int(ends.in_target.sum())} of {len(ends)} ended in the target"
+        if ends.lost:
+            kept = int(ends.kept.sum())
+            yield f"{where}: {kept - ends.lost} of {kept} ended in the target"
         if ends.penetration > DEEPEST_MOVING:
             yield f"{where}: a finger sank {ends.penetration:.2g} diameters in"
     if row.escape is not None:

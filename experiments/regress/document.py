@@ -37,7 +37,16 @@ def _rubbed(row: Row, ends: Ends) -> dict[str, Any]:
     assert row.physical is not None
     level = ends.level / row.physical.cage.sigma_0
     counts = ends_document(ends)
-    kept = ("mu", "trials", "target", "stray", "position_error", "angle_error", "penetration")
+    kept = (
+        "mu",
+        "trials",
+        "target",
+        "near_level",
+        "stray",
+        "position_error",
+        "angle_error",
+        "penetration",
+    )
     first = level if math.isfinite(level) else None
     return {"sigma_first": first, **{key: counts[key] for key in kept}}
 
