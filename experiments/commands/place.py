@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from experiments.cases.asked import add_case, case_of
-from experiments.io.options import add_json, check_output, not_negative, positive, same
+from experiments.io.options import add_json, check_output, one_coefficient, positive, same
 
 
 def add_parser(subparsers: Any) -> None:
@@ -22,23 +22,23 @@ def add_parser(subparsers: Any) -> None:
     add_case(parser)
     parser.add_argument(
         "--friction",
-        type=not_negative,
+        type=one_coefficient,
         default=0.0,
         metavar="MU",
         help="of the fingers, up to MU (0): the level is then the one that `icage plan "
         "--friction MU` gives",
     )
-    opening = parser.add_mutually_exclusive_group()
-    opening.add_argument(
+    parser.add_argument(
         "--opening",
         type=positive,
         metavar="S",
         help="the size sigma of the open hand, in the object's unit",
     )
-    opening.add_argument(
+    parser.add_argument(
         "--opening-error",
         action="store_true",
-        help="the opening may be off as the fingers are: it keeps away from the level",
+        help="the opening may be off as the fingers are: it keeps away from the level (with "
+        "--opening: S is meant, and missed)",
     )
     add_json(parser)
     parser.add_argument(

@@ -39,8 +39,9 @@ _PANEL = 190.0
 _CURVE = 150.0
 """[pt] Height of the curve."""
 
-_MOST = 4
-"""Panels: the jams of the smallest coefficients that were asked for."""
+_MOST = 6
+"""Panels: the jams of the smallest coefficients that were asked for. How many more there are is
+written beside them."""
 
 _SAME = 1e-6
 """[1] Jams whose levels differ by less are one."""
@@ -90,7 +91,7 @@ def _page(
     name: str,
     unit: str,
 ) -> Figure:
-    panels = _panels(cage, levels)
+    panels, letters, more = _panels(cage, levels)
     across = 1 if len(panels) == 1 else 2
     rows = ceil(len(panels) / across)
     gap, head, foot = 12.0, 26.0, 36.0
@@ -98,6 +99,13 @@ def _page(
     figure = Figure(figsize=(_WIDE / 72.0, tall / 72.0), facecolor="white")
     FigureCanvasAgg(figure)
     _title(figure, tall, cage, levels[0].tolerance, name, unit)
+    if more:
+        jams = "jam limits" if more == 1 else "jams limit"
+        figure.text(
+            1.0 - 18.0 / _WIDE, (foot + _CURVE + 4.0) / tall,
+            f"{more} other {jams} larger coefficients: not drawn", fontsize=8.5, color=QUIET_INK,
+            ha="right",
+        )  # fmt: skip
     wide = (_WIDE - 28.0 - (across - 1) * gap) / across
     for k, panel in enumerate(panels):
         x = 14.0 + (k % across) * (wide + gap)
@@ -112,7 +120,6 @@ def _page(
         figure.text(x / _WIDE, above, panel.letter, fontsize=10, fontweight="bold", color=INK)
         figure.text((x + 13.0) / _WIDE, above, words, fontsize=9, color=INK)
     box = (52.0 / _WIDE, foot / tall, (_WIDE - 52.0 - 18.0) / _WIDE, _CURVE / tall)
-    letters = {panel.level.mu: panel.letter for panel in panels}
     marks = [
         Mark(one.mu, one.sigma_first / cage.sigma_0, letters.get(one.mu, ""))
         for one in levels
@@ -122,22 +129,30 @@ def _page(
     return figure
 
 
-def _panels(cage: Cage, levels: Sequence[FrictionLevel]) -> list[_Panel]:
-    """A panel for each jam of its own, of the smallest coefficient at which it limits."""
-    chosen: list[FrictionLevel] = []
+def _panels(
+    cage: Cage, levels: Sequence[FrictionLevel]
+) -> tuple[list[_Panel], dict[float, str], int]:
+    """A panel for each jam of its own, of the smallest coefficient at which it limits.
+
+    With them the letter of the jam that limits each coefficient, and how many jams have no panel.
+    """
+    panels: list[_Panel] = []
+    letters: dict[float, str] = {}
+    others: list[float] = []
     for level in sorted(levels, key=lambda one: one.mu):
         jam = level.jam
-        if jam is None or any(
-            other.jam is not None and abs(other.jam.sigma - jam.sigma) < _SAME * jam.sigma
-            for other in chosen
-        ):
+        if jam is None:
             continue
-        chosen.append(level)
-    return [
-        _Panel(letter, level, level.jam, jam_forces(cage, level.jam, level.mu))
-        for letter, level in zip(string.ascii_lowercase, chosen[:_MOST], strict=False)
-        if level.jam is not None
-    ]
+        same = [p for p in panels if abs(p.jam.sigma - jam.sigma) < _SAME * jam.sigma]
+        if same:
+            letters[level.mu] = same[0].letter
+        elif len(panels) < _MOST:
+            letter = string.ascii_lowercase[len(panels)]
+            panels.append(_Panel(letter, level, jam, jam_forces(cage, jam, level.mu)))
+            letters[level.mu] = letter
+        elif all(abs(sigma - jam.sigma) >= _SAME * jam.sigma for sigma in others):
+            others.append(jam.sigma)
+    return panels, letters, len(others)
 
 
 def _title(
@@ -155,7 +170,7 @@ def _title(
     figure.text(
         14.0 / _WIDE, 1.0 - 28.0 / tall,
         f"near the target: within {tolerance.position:g} diameters and "
-        f"{degrees(tolerance.angle):.3g}° of it. Dashed: the target. Wedges: friction cones.",
+        f"{degrees(tolerance.angle):.4g}° of it. Dashed: the target. Wedges: friction cones.",
         fontsize=8.5, color=QUIET_INK,
     )  # fmt: skip
 

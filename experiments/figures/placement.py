@@ -56,6 +56,9 @@ _DOT = 0.009
 _NUMBER_FITS = 0.022
 """[shares of the view] A disc this large carries its number inside."""
 
+_BARELY = 1.0015
+"""[sigma_0] A hand opened to less is opened by so much: four digits would not show it."""
+
 _POINTS = 257
 
 
@@ -97,9 +100,10 @@ def _words(cage: Cage, best: BestPlacement, unit: str) -> str:
     errs = ", opening included" if best.opening_error else ""
     friction = f", friction up to {best.mu:g}" if best.mu else ""
     size = best.placement.sigma / cage.sigma_0
+    opened = f"to {size:.4g}" if size >= _BARELY else f"by {size - 1.0:.3g}"
     return (
-        f"each finger may be off by $r$ = {best.tolerance:.4g} {unit}{errs}; opened to "
-        f"{size:.4g} $\\sigma_0${friction}"
+        f"each finger may be off by $r$ = {best.tolerance:.4g} {unit}{errs}; opened {opened} "
+        f"$\\sigma_0${friction}"
     )
 
 
@@ -139,7 +143,7 @@ def _draw_hand(axes: Axes, cage: Cage, best: BestPlacement, unit: str) -> None:
             color=PAPER if inside else colour, ha="center", va="center_baseline", zorder=9,
             path_effects=[] if inside else [withStroke(linewidth=1.5, foreground=PAPER)],
         )  # fmt: skip
-    _scale_bar(axes, view, unit)
+    _scale_bar(axes, view, unit, shapely.MultiPoint(best.fingers).buffer(room))
 
 
 def _view(
@@ -164,11 +168,29 @@ def _framed(bounds: FloatArray, aspect: float) -> tuple[FloatArray, float]:
     return 0.5 * (bounds[:2] + bounds[2:]), 1.06 * float(max(size[0], aspect * size[1]))
 
 
-def _scale_bar(axes: Axes, view: tuple[float, float, float, float], unit: str) -> None:
-    """A length to compare with, in the lower left corner."""
+def _scale_bar(
+    axes: Axes,
+    view: tuple[float, float, float, float],
+    unit: str,
+    keep_off: shapely.Polygon | shapely.MultiPolygon,
+) -> None:
+    """A length to compare with, in the lower left corner or in one with more room."""
     side = view[2] - view[0]
     length = scale_bar_length(0.2 * side)
-    x, y = view[0] + 0.03 * side, view[1] + 0.03 * side
+    tall = 0.06 * side
+    corners = [
+        (x, y)
+        for y in (view[1] + 0.03 * side, view[3] - tall)
+        for x in (view[0] + 0.03 * side, view[2] - 0.03 * side - length)
+    ]
+    x, y = min(
+        corners,
+        key=lambda at: (
+            keep_off.intersection(
+                shapely.box(at[0], at[1] - 0.01 * side, at[0] + length, at[1] + tall)
+            ).area
+        ),
+    )
     white = [withStroke(linewidth=3.0, foreground=PAPER)]
     axes.plot([x, x + length], [y, y], color=INK, lw=1.4, zorder=10, path_effects=white)
     axes.text(
@@ -198,6 +220,7 @@ def _draw_curve(axes: Axes, best: BestPlacement, unit: str) -> None:
     axes.set_ylim(0.0, 1.42 * bears.shift)
     axes.set_xlabel("turn either way [deg]", color=INK)
     axes.set_ylabel("shift in any direction" + (f" [{unit}]" if unit else ""), color=INK)
+    axes.ticklabel_format(useOffset=False)
     axes.tick_params(colors=INK, width=0.6, length=3.0)
     for name, spine in axes.spines.items():
         spine.set_color(QUIET_INK)

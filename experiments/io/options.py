@@ -41,6 +41,13 @@ def not_negative(text: str) -> float:
     return value
 
 
+def one_coefficient(text: str) -> float:
+    """A coefficient of friction, where others take several."""
+    if "," in text:
+        raise argparse.ArgumentTypeError(f"{text!r}: one coefficient is needed, the largest")
+    return not_negative(text)
+
+
 def not_negative_list(text: str) -> tuple[float, ...]:
     """Finite numbers, zero or above, with commas between them."""
     return tuple(not_negative(part.strip()) for part in text.split(","))

@@ -16,6 +16,7 @@ from experiments.jams.closings import Ends
 from experiments.jams.run import Judged
 from experiments.jams.settings import Changed
 from icage.arrays import FloatArray
+from icage.friction.levels import FrictionLevel
 from sim.grip.stick import RUBBING
 
 FORMAT: Final = "icage-jams/1"
@@ -49,7 +50,7 @@ def _case(row: Judged) -> dict[str, Any]:
                 "mu": one.mu,
                 "sigma_first": None if one.sigma_first is None else one.sigma_first / cage.sigma_0,
                 "fingers": None if one.jam is None else one.jam.fingers,
-                "ends": {"position": one.ends.position_max, "angle": one.ends.angle_max},
+                "ends": _foretold(one),
             }
             for one in row.levels
         ],
@@ -57,6 +58,12 @@ def _case(row: Judged) -> dict[str, Any]:
         "jams": [_jam(row, jam) for jam in row.jams],
         "untested_jams": row.untested,
     }
+
+
+def _foretold(level: FrictionLevel) -> dict[str, float] | None:
+    """How far from the target closings may stop, in diameters and radians."""
+    ends = level.ends
+    return None if ends is None else {"position": ends.position_max, "angle": ends.angle_max}
 
 
 def ends_document(ends: Ends) -> dict[str, Any]:

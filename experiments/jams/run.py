@@ -75,6 +75,7 @@ def judge(
 def _farther(done: Judged, one: Ends) -> Iterator[str]:
     """Ends in the target that are farther from it than they may stop."""
     most = next(level.ends for level in done.levels if level.mu == one.mu)
+    assert most is not None
     where = one.in_target & one.settled & one.kept & ~one.sunk
     position = float(one.position[where].max(initial=0.0))
     angle = float(one.angle[where].max(initial=0.0))

@@ -28,8 +28,10 @@ def friction_document(found: Sequence[FrictionLevel], tolerance: JamTolerance) -
     }
 
 
-def _ends(ends: JamEnds) -> dict[str, float]:
+def _ends(ends: JamEnds | None) -> dict[str, float] | None:
     """In the units of ``tolerance``: diameters and degrees."""
+    if ends is None:
+        return None
     return {"position_max": ends.position_max, "angle_max_deg": degrees(ends.angle_max)}
 
 
@@ -62,11 +64,13 @@ def friction_summary(
             )
         limit = "" if level.jam is None else f": fingers {_list(level.jam.fingers)} jam there"
         ends = level.ends
-        stops = (
-            f"; stops at most {ends.position_max:.3g} diameters, "
-            f"{degrees(ends.angle_max):.3g} deg off"
-        )
-        yield f"  mu {level.mu:<9g} {until}{limit}{stops if level.mu else ''}"
+        stops = ""
+        if level.mu and ends is not None:
+            stops = (
+                f"; stops at most {ends.position_max:.4g} diameters, "
+                f"{degrees(ends.angle_max):.4g} deg off"
+            )
+        yield f"  mu {level.mu:<9g} {until}{limit}{stops}"
 
 
 def _list(fingers: tuple[int, ...]) -> str:

@@ -21,6 +21,7 @@ from icage.errors import InputError
 from icage.friction.jam import Jam, JamTolerance
 from icage.friction.jam_search import JamSearch
 from icage.friction.levels import FrictionLevel, checked_mu, limited
+from icage.library_faults import geometry_told
 from icage.values import Value
 
 if TYPE_CHECKING:
@@ -135,6 +136,7 @@ class FrictionCurve(Value):
         return low
 
 
+@geometry_told()
 def friction_curve(
     cage: Cage, largest: float = 1.0, tolerance: JamTolerance | None = None
 ) -> FrictionCurve:
@@ -165,9 +167,9 @@ def friction_curve(
     >>> round(curve.mu_max(0.6), 6)
     0.020003
     """
-    largest = checked_mu(largest)
+    largest = checked_mu(largest, "largest")
     if largest == 0.0:
-        raise InputError("the largest mu is 0; a curve needs a positive one")
+        raise InputError("largest is 0; a curve needs a positive coefficient of friction")
     chosen = JamTolerance() if tolerance is None else tolerance
     work = work_of(cage)
     start = FrictionLevel(0.0, cage.sigma_first, None, chosen, cage)

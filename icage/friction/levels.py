@@ -47,12 +47,14 @@ class FrictionLevel:
     _cage: Cage | None = field(default=None, repr=False, compare=False)
 
     @property
-    def ends(self) -> JamEnds:
+    def ends(self) -> JamEnds | None:
         """How far from the target closings from below ``sigma_first`` may stop; at most the
-        tolerance.
+        tolerance. None for what is not a cage: from nowhere does closing end at the target.
         """
-        if self._cage is None or work_of(self._cage) is None:
+        if self._cage is None:
             return JamEnds(self.tolerance.position, self.tolerance.angle)
+        if work_of(self._cage) is None:
+            return None
         return jam_ends(self._cage, self)
 
 
@@ -108,11 +110,11 @@ def friction_levels(
     return tuple(found[mu] for mu in asked)
 
 
-def checked_mu(mu: float) -> float:
-    """A coefficient of friction, or an InputError."""
-    value = a_number(mu, "mu")
+def checked_mu(mu: float, name: str = "mu") -> float:
+    """A coefficient of friction, or an InputError that calls it by this name."""
+    value = a_number(mu, name)
     if value < 0.0:
-        raise InputError(f"mu is {value:g}; a coefficient of friction is 0 or more")
+        raise InputError(f"{name} is {value:g}; a coefficient of friction is 0 or more")
     return value + 0.0  # -0.0 is 0
 
 

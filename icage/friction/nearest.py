@@ -15,11 +15,13 @@ from icage.friction.jam import Jam
 from icage.friction.jam_search import JamSearch
 from icage.friction.levels import checked_mu
 from icage.hand import Placement
+from icage.library_faults import geometry_told
 
 if TYPE_CHECKING:
     from icage.cage import Cage
 
 
+@geometry_told()
 def nearest_jam(
     cage: Cage, mu: float, placement: Placement | ArrayLike | Sequence[float]
 ) -> tuple[float, Jam | None]:

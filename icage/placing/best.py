@@ -22,6 +22,7 @@ from icage.checks import a_number, an_instance
 from icage.errors import GeometryError, GraspError, InputError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape, Placement
+from icage.library_faults import geometry_told
 from icage.placing.kernels.edges import near_edges
 from icage.placing.kernels.search import Asked, Deepest, deepest
 from icage.placing.turn_and_shift import TurnAndShift
@@ -88,6 +89,7 @@ class BestPlacement(Value):
         object.__setattr__(self, "fingers", read_only(np.array(self.fingers, dtype=np.float64)))
 
 
+@geometry_told()
 def place(
     cage: Cage,
     mu: float = 0.0,

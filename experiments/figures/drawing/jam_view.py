@@ -23,6 +23,9 @@ from icage.cage import Cage
 from icage.friction.forces import JamForces
 from icage.friction.levels import Jam
 
+_CONE, _ARROW = 0.8, 0.95
+"""[reach] Length of a cone, and of the arrow of the largest force."""
+
 
 def draw_jam(
     axes: Axes, size: tuple[float, float], cage: Cage, jam: Jam, forces: JamForces
@@ -64,8 +67,19 @@ def draw_jam(
                 ec=colour if free else PAPER, lw=1.2 if free else 0.6, zorder=7,
             )
         )  # fmt: skip
-    _draw_forces(axes, forces, 0.62 * float(window.min()))
+    _draw_forces(axes, forces, _reach(forces, middle, window))
     _number_fingers(axes, jam.contacts, dot, 9.0 * grow)
+
+
+def _reach(forces: JamForces, middle: FloatArray, window: FloatArray) -> float:
+    """Length of a cone, [unit]: of the window a good part, or less so that all stay inside."""
+    usual = 0.62 * float(window.min())
+    most = usual
+    for contact in forces.contacts:
+        left = window - np.sign(contact.cone) * (contact.at - middle)
+        along = np.abs(contact.cone)
+        most = min(most, float((0.97 * left / np.maximum(_CONE * along, 1e-12)).min()))
+    return max(most, 0.3 * usual)
 
 
 def _draw_forces(axes: Axes, forces: JamForces, reach: float) -> None:
@@ -73,7 +87,7 @@ def _draw_forces(axes: Axes, forces: JamForces, reach: float) -> None:
     most = max(float(np.hypot(*c.force)) for c in forces.contacts)
     for contact in forces.contacts:
         colour = FINGERS[contact.finger - 1]
-        edges = contact.at + 0.8 * reach * contact.cone
+        edges = contact.at + _CONE * reach * contact.cone
         axes.add_patch(
             Polygon(
                 [contact.at, *edges], closed=True, fc=tint(colour, 0.35), ec=colour, lw=0.5,
@@ -81,7 +95,7 @@ def _draw_forces(axes: Axes, forces: JamForces, reach: float) -> None:
             )
         )  # fmt: skip
         if most > 0.0 and np.hypot(*contact.force) > 0.02 * most:
-            tip = contact.at + 0.95 * reach * contact.force / most
+            tip = contact.at + _ARROW * reach * contact.force / most
             axes.add_patch(
                 FancyArrowPatch(
                     (float(contact.at[0]), float(contact.at[1])), (float(tip[0]), float(tip[1])),

@@ -21,6 +21,16 @@ def document(capsys: Any, *options: str, case: str = PLIERS) -> dict[str, Any]:
     return json.loads(result.out)
 
 
+def test_an_opening_that_is_set_and_missed(capsys: Any) -> None:
+    cage = icage.plan(icage.load(PLIERS))
+    near = 0.01 * cage.sigma_0 + 0.99 * (cage.sigma_first or 0.0)
+    found = document(capsys, "--opening", repr(near), "--opening-error")
+    known = document(capsys, "--opening", repr(near))
+    assert (found["opening"], found["opening_error"]) == (near, True)
+    assert found["tolerance"] < known["tolerance"]
+    assert found["tolerance"] == icage.place(cage, opening=near, opening_error=True).tolerance
+
+
 def test_the_keys_of_the_document(capsys: Any) -> None:
     found = document(capsys, "--opening-error", "--friction", "0.3")
     cage = icage.plan(icage.load(PLIERS))
@@ -76,7 +86,7 @@ def test_a_drawing_is_placed_for(capsys: Any, tmp_path: Path) -> None:
     [
         ("T_best", ("--opening", "17"), "below the level"),
         ("T_best", ("--opening", "-1"), "not above 0"),
-        ("T_best", ("--opening", "2", "--opening-error"), "not allowed with"),
+        ("T_best", ("--friction", "0.1,0.2"), "one coefficient is needed"),
         ("T_best", ("--friction", "-1"), "below 0"),
         ("T_best", ("--figure", "place.pdf"), ".svg or .png"),
         ("rectangle_notcage", (), "not a cage"),

@@ -46,6 +46,14 @@ def test_the_keys_of_the_document(capsys: Any) -> None:
     assert set(jam["fingers"]) <= {1, 2, 3}
 
 
+def test_what_is_no_cage_promises_nothing(capsys: Any) -> None:
+    case = str(CASES / "rectangle_notcage.json")
+    plan = document(capsys, "--friction", "0.1", case=case)
+    assert plan["friction"] == [
+        {"mu": 0.1, "sigma_first": plan["sigma_0"], "jam": None, "ends": None}
+    ]
+
+
 def test_a_plan_without_the_option_has_no_such_keys(capsys: Any) -> None:
     assert not {"friction", "tolerance"} & document(capsys).keys()
 

@@ -157,9 +157,6 @@ def test_a_jam_is_nearest_to_itself() -> None:
 
 def test_what_is_no_question_is_refused() -> None:
     cage = plan(TRIANGLE, MIDDLES)
-    for mu in (0.0, -1.0, math.nan):
-        with pytest.raises(InputError, match="mu"):
-            icage.friction_curve(cage, mu)
     curve = icage.friction_curve(cage, 0.1)
     with pytest.raises(InputError, match="0 to 0.1"):
         curve.sigma_first(0.2)
@@ -169,3 +166,9 @@ def test_what_is_no_question_is_refused() -> None:
         icage.nearest_jam(cage, 0.1, [0.0, 0.0, 0.0])
     assert curve.mu_max(2.0) is None
     assert icage.nearest_jam(cage, 0.0, cage.target_placement) == (math.inf, None)
+
+
+@pytest.mark.parametrize("largest", [-1, 0, math.nan, "much"])
+def test_a_largest_coefficient_is_refused_by_its_own_name(largest: object) -> None:
+    with pytest.raises(InputError, match="^largest is "):
+        icage.friction_curve(plan(TRIANGLE, MIDDLES), largest)  # type: ignore[arg-type]
