@@ -92,8 +92,12 @@ BENCHMARKS: dict[str, Benchmark] = {
     "discs": Benchmark(
         "Disc fingers against point fingers",
         tuple(
-            Figure(f"a plan, discs / points, n = {n}", f"rows > n={n} > ratio", "1", "lower", 0.3)
+            Figure(f"a plan, discs / {what}, n = {n}", f"rows > n={n} > {key}", "1", "lower", 0.3)
             for n in (20, 40, 60)
+            for what, key in (
+                ("points", "ratio"),
+                ("points on the grown outline", "ratio_grown"),
+            )
         ),
         quick=("--outlines", "3"),
     ),
