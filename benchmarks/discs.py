@@ -6,7 +6,7 @@ Random stars with n vertices and a random grasp for each kind of finger, radius 
 Every plan is timed five times, warm, all kinds in turn: minimum, median and maximum, [ms] of
 processor time. ``ratio`` is that of the medians over all outlines of one n. ``grown`` is a plan
 with point fingers on the polygon that stands for the outline grown by the radius (chords of an
-eighth of a quadrant, ``vertices`` of them): the same question, answered to 1e-4 and not to rounding.
+eighth of a quadrant, ``vertices`` of them): the same question, answered to 1e-4.
 """
 
 from __future__ import annotations
