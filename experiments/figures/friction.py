@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import ceil, degrees
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -21,11 +20,11 @@ from experiments.figures.drawing.jam_view import draw_jam
 from experiments.figures.drawing.level_curve import Mark, draw_level_curve
 from experiments.figures.drawing.numbers import significant
 from experiments.figures.drawing.palette import INK, QUIET_INK
-from experiments.figures.plan import FIGURE_SETTINGS
+from experiments.figures.drawing.written import check_suffix, settings, write
+from experiments.io.one_line import in_figure
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.errors import InputError
-from icage.formats.whole_files import whole_file
 from icage.friction.curve import FrictionCurve
 from icage.friction.forces import JamForces, jam_forces
 from icage.friction.levels import FrictionLevel, Jam, JamTolerance
@@ -70,18 +69,11 @@ def draw_friction(
     InputError:
         The suffix is neither .svg nor .png, or the cage is none.
     """
-    suffix = path.suffix.lower()
-    if suffix not in (".svg", ".png"):
-        raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
+    check_suffix(path)
     if cage.status == "not_a_cage" or not levels:
         raise InputError(f"{name} is not a cage: there is no level that friction could lower")
-    with matplotlib.rc_context(FIGURE_SETTINGS):
-        figure = _page(cage, levels, curve, name, unit)
-        with whole_file(path) as part:
-            if suffix == ".svg":
-                figure.savefig(part, format="svg", metadata={"Date": None})
-            else:
-                figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
+    with settings():
+        write(_page(cage, levels, curve, name, unit), path)
 
 
 def _page(
@@ -164,7 +156,7 @@ def _title(
         else "point fingers"
     )
     figure.text(
-        14.0 / _WIDE, 1.0 - 15.0 / tall, f"{name}, {fingers}", fontsize=10.5, color=INK,
+        14.0 / _WIDE, 1.0 - 15.0 / tall, f"{in_figure(name)}, {fingers}", fontsize=10.5, color=INK,
         fontweight="bold", parse_math=False,
     )  # fmt: skip
     figure.text(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import shapely
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -13,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from experiments.figures.drawing.palette import INK, QUIET_INK
 from experiments.figures.drawing.plan_view import draw_plan_view
 from experiments.figures.drawing.sheet import lay_out
-from experiments.figures.plan import FIGURE_SETTINGS
+from experiments.figures.drawing.written import settings
 from icage.arrays import FloatArray
 from icage.cage import Cage, Puncture
 from icage.cells.regions import caging_regions
@@ -40,7 +39,7 @@ def draw_counterexample(cage: Cage, placement: FloatArray, verdict: str, path: P
         np.array([cage.outline.polygon, *(r.geometry for r in regions)], dtype=object)
     )
     box = (float(bounds[0]), float(bounds[1]), float(bounds[2]), float(bounds[3]))
-    with matplotlib.rc_context(FIGURE_SETTINGS):
+    with settings():
         sheet = lay_out(box, box, _STRIP)
         FigureCanvasAgg(sheet.figure)
         shown = Puncture(float(placement[3]), "intermediate", (), hand, ())

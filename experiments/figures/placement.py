@@ -9,7 +9,6 @@ from __future__ import annotations
 from math import degrees
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import shapely
 from matplotlib.axes import Axes
@@ -29,12 +28,11 @@ from experiments.figures.drawing.palette import (
     tint,
 )
 from experiments.figures.drawing.shapes import as_path, scale_bar_length, tidied
-from experiments.figures.plan import FIGURE_SETTINGS, FORMATS
+from experiments.figures.drawing.written import check_suffix, settings, write
+from experiments.io.one_line import in_figure
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import caging_regions
-from icage.errors import InputError
-from icage.formats.whole_files import whole_file
 from icage.placing.best import BestPlacement
 
 _SIZE = (7.0, 3.3)
@@ -70,16 +68,9 @@ def draw_placement(cage: Cage, best: BestPlacement, name: str, unit: str, path: 
     InputError:
         The suffix is neither .svg nor .png.
     """
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
-    with matplotlib.rc_context({**FIGURE_SETTINGS, "font.size": 8.0}):
-        figure = placement_figure(cage, best, name, unit)
-        with whole_file(path) as part:
-            if suffix == ".svg":
-                figure.savefig(part, format="svg", metadata={"Date": None})
-            else:
-                figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
+    check_suffix(path)
+    with settings(font_size=8.0):
+        write(placement_figure(cage, best, name, unit), path)
 
 
 def placement_figure(cage: Cage, best: BestPlacement, name: str, unit: str) -> Figure:
@@ -89,7 +80,8 @@ def placement_figure(cage: Cage, best: BestPlacement, name: str, unit: str) -> F
     _draw_hand(figure.add_axes(_HAND), cage, best, unit)
     _draw_curve(figure.add_axes(_CURVE), best, unit)
     figure.text(
-        0.02, 0.945, name, fontsize=9.5, fontweight="bold", color=INK, va="center", parse_math=False
+        0.02, 0.945, in_figure(name), fontsize=9.5, fontweight="bold", color=INK, va="center",
+        parse_math=False,
     )  # fmt: skip
     figure.text(0.02, 0.89, _words(cage, best, unit), fontsize=8.0, color=INK, va="center")
     return figure

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-import matplotlib
 import numpy as np
 import shapely
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -17,24 +15,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from experiments.figures.drawing.caption import caption_lines, draw_caption, strip_height
 from experiments.figures.drawing.plan_view import draw_plan_view, frame_of
 from experiments.figures.drawing.sheet import Bounds, Sheet, lay_out
+from experiments.figures.drawing.written import check_suffix, settings, write
 from icage.cage import Cage, Puncture
 from icage.cells.regions import FingerRegion, caging_regions
-from icage.errors import InputError
-from icage.formats.whole_files import whole_file
-
-FORMATS = (".svg", ".png")
-
-if TYPE_CHECKING:
-    from matplotlib.typing import RcKeyType
-
-FIGURE_SETTINGS: dict[RcKeyType, Any] = {
-    "svg.hashsalt": "icage",
-    "svg.fonttype": "path",
-    "font.family": "DejaVu Sans",
-    "mathtext.fontset": "dejavusans",
-    "path.simplify": False,
-}
-"""Fixed, so that a user's matplotlibrc changes nothing; text as outlines looks alike everywhere."""
 
 
 def figure_regions(cage: Cage) -> tuple[FingerRegion, ...]:
@@ -60,16 +43,9 @@ def draw_plan(
     InputError:
         The suffix is neither .svg nor .png.
     """
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
-    with matplotlib.rc_context(FIGURE_SETTINGS):
-        sheet = plan_sheet(cage, regions, name, unit)
-        with whole_file(path) as part:
-            if suffix == ".svg":
-                sheet.figure.savefig(part, format="svg", metadata={"Date": None})
-            else:
-                sheet.figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
+    check_suffix(path)
+    with settings():
+        write(plan_sheet(cage, regions, name, unit).figure, path)
 
 
 def plan_sheet(cage: Cage, regions: Sequence[FingerRegion], name: str, unit: str) -> Sheet:

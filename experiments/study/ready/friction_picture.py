@@ -23,9 +23,10 @@ from PIL import Image
 
 from experiments.figures.drawing.level_curve import draw_level_curve
 from experiments.figures.drawing.palette import FINGERS, INK, PAPER, QUIET_INK, RULE, SKY, tint
+from experiments.figures.drawing.written import settings, write
 from experiments.io.intervals import wilson
 from experiments.study.ready.__main__ import OUT
-from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
+from experiments.study.report.pictures import MARGIN, WIDE, Page
 from experiments.study.run.document import study_of
 from icage.arrays import FloatArray, IntArray
 from icage.formats.whole_files import whole_file

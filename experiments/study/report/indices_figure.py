@@ -11,17 +11,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from experiments.figures.drawing.palette import FINGERS, INK, Colour, tint
+from experiments.figures.drawing.written import check_suffix, settings, write
 from experiments.study.inputs.variables import label
-from experiments.study.report.pictures import (
-    MARGIN,
-    ROW,
-    WIDE,
-    Page,
-    check_suffix,
-    plain,
-    settings,
-    write,
-)
+from experiments.study.report.pictures import MARGIN, ROW, WIDE, Page, plain
 from icage.errors import InputError
 
 _FIRST, _TOTAL = FINGERS[0], FINGERS[1]

@@ -27,8 +27,9 @@ from experiments.figures.drawing.palette import (
     QUIET_INK,
 )
 from experiments.figures.drawing.shapes import as_pair, as_path
+from experiments.figures.drawing.written import settings, write
 from experiments.study.inputs.variables import input_of
-from experiments.study.report.pictures import MARGIN, WIDE, Page, settings, write
+from experiments.study.report.pictures import MARGIN, WIDE, Page
 from experiments.study.run.one_trial_again import StudyRerun, filmed_scene, rerun_trial
 from experiments.study.run.worlds import worlds_of
 from icage.arrays import FloatArray

@@ -16,13 +16,14 @@ import shapely
 
 from experiments.figures.drawing.shapes import tidied
 from experiments.figures.drawing.sheet import Bounds
+from experiments.figures.drawing.written import check_suffix, settings, write
 from experiments.io.arrow_table import Table
 from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.report.hexagons import Hexagons, bin_hexagons
 from experiments.study.report.map_layout import SCALE, Place, placed
 from experiments.study.report.map_panel import Cells, Panel, draw_panel, draw_scale_bar
 from experiments.study.report.map_strip import draw_strip, strip_height, strip_keys, strip_words
-from experiments.study.report.pictures import WIDE, Page, check_suffix, settings, write
+from experiments.study.report.pictures import WIDE, Page
 from experiments.study.run.rows import target_trials
 from icage.arrays import BoolArray, FloatArray
 from icage.cage import Cage

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, Final, Literal
 
-import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from experiments.figures.drawing.palette import INK, QUIET_INK, RULE
-from experiments.figures.plan import FIGURE_SETTINGS, FORMATS
 from experiments.io.one_line import in_figure
-from icage.errors import InputError
-from icage.formats.whole_files import whole_file
 
 WIDE: Final = 504.0
 """[pt] A page as wide as both columns of a journal."""
@@ -53,34 +46,6 @@ class Page:
         self.text(MARGIN, y, in_figure(title), 10.0, fontweight="bold")
         for k, line in enumerate(lines, 1):
             self.text(MARGIN, y - ROW * k, line, 8.5, color=QUIET_INK)
-
-
-@contextmanager
-def settings() -> Generator[None]:
-    """The settings of matplotlib for every picture; whatever the user's are."""
-    with matplotlib.rc_context(FIGURE_SETTINGS):
-        yield
-
-
-def check_suffix(path: Path) -> None:
-    """Refuse a name that says no format.
-
-    Raises
-    ------
-    InputError:
-        The suffix is neither .svg nor .png.
-    """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(f"figure {path.name}: a name ending in .svg or .png is needed")
-
-
-def write(figure: Figure, path: Path) -> None:
-    """Write a figure, whole or not at all, the same bytes every time; inside ``settings``."""
-    with whole_file(path) as part:
-        if path.suffix.lower() == ".svg":
-            figure.savefig(part, format="svg", metadata={"Date": None})
-        else:
-            figure.savefig(part, format="png", dpi=200, metadata={"Software": "icage"})
 
 
 def plain(axes: Axes, values: Literal["x", "y", "both"] = "y") -> None:

@@ -16,21 +16,13 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from experiments.figures.drawing.palette import FINGERS, PAPER, QUIET_INK, tint
+from experiments.figures.drawing.written import check_suffix, settings, write
 from experiments.io.outcome_words import NOT_CLOSED
 from experiments.study.inputs.variables import VARIABLES, label
 from experiments.study.report.indices_figure import draw_indices
 from experiments.study.report.map import draw_map
 from experiments.study.report.names import display, merged, percent
-from experiments.study.report.pictures import (
-    MARGIN,
-    ROW,
-    WIDE,
-    Page,
-    check_suffix,
-    plain,
-    settings,
-    write,
-)
+from experiments.study.report.pictures import MARGIN, ROW, WIDE, Page, plain
 from icage.errors import InputError
 
 __all__ = ["draw_indices", "draw_map", "draw_rates"]

@@ -19,6 +19,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.text import Text
 
 from experiments.figures.drawing.sheet import Bounds
+from experiments.figures.drawing.written import settings
 from experiments.figures.plan import figure_regions
 from experiments.io.intervals import wilson
 from experiments.study.inputs.config import StudyConfig
@@ -32,7 +33,7 @@ from experiments.study.report.hexagons import bin_hexagons
 from experiments.study.report.map import CROSSES, Closings, map_page
 from experiments.study.report.map_layout import placed
 from experiments.study.report.names import merged, percent
-from experiments.study.report.pictures import WIDE, Page, settings
+from experiments.study.report.pictures import WIDE, Page
 from experiments.study.report.rate_figures import draw_indices, draw_map, draw_rates
 from experiments.study.report.summary import summary
 from icage.cells.regions import FingerRegion
