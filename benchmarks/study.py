@@ -127,12 +127,12 @@ def _varied(case: str, trials: int, passes: int) -> dict[str, float]:
 def _session(case: str, trials: int, vary: dict[str, str]) -> Iterator[Session]:
     with tempfile.TemporaryDirectory(prefix="icage-") as folder:
         given: dict[str, Any] = {"case": case, "trials": trials, "vary": vary}
-        yield session_of(given, folder, False, SHARD)
+        yield session_of(given, folder, False)
 
 
 def _study(session: Session) -> Any:
     backend = on_threads(1)
-    return run_study(session.study, session.folder, backend, session.shard, lambda *_: None)[0]
+    return run_study(session.study, session.folder, backend, SHARD, lambda *_: None)[0]
 
 
 @dataclass

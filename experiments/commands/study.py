@@ -55,8 +55,9 @@ def add_parser(subparsers: Any) -> None:
         "--threads", metavar="T", type=count, default=None, help="threads to run on (one per core)"
     )
     parser.add_argument(
-        "--shard", metavar="N", type=count, default=500, help="trials in a shard (default 500)"
-    )
+        "--shard", metavar="N", type=count, default=None,
+        help="trials in a shard (250 to 1000, at least two shards a thread)",
+    )  # fmt: skip
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", type=file_name,
         help="run the shards on the dask.distributed cluster at tcp://HOST:PORT",

@@ -67,7 +67,7 @@ def main() -> None:
         folder = options.out / one.name
         there = (folder / "study.json").exists()
         with held(str(folder)):
-            session = session_of(given, str(folder), there, 500)
+            session = session_of(given, str(folder), there)
             lines = run_session(session, options.threads, None, True)
         print("\n".join(lines), flush=True)
 

@@ -37,7 +37,7 @@ from experiments.study.run.folder import (
 )
 from experiments.study.run.rows import schema_of
 from experiments.study.run.shard import Study
-from experiments.study.run.shards import Backend, on_threads, run_study
+from experiments.study.run.shards import ON_A_CLUSTER, Backend, on_threads, run_study, shard_size
 from icage.case import Case
 from icage.formats.load import is_shipped, load
 from icage.formats.whole_files import whole_file
@@ -55,7 +55,7 @@ class Session:
     study: Study
     document: dict[str, Any]
     folder: StudyFolder
-    shard: int
+    shard: int | None
     chosen: Chosen | None = None
     """The grasp that was searched, for an object that came without one."""
     any_code: bool = False
@@ -63,7 +63,11 @@ class Session:
 
 
 def session_of(
-    given: Mapping[str, Any], out: str | None, resume: bool, shard: int, any_code: bool = False
+    given: Mapping[str, Any],
+    out: str | None,
+    resume: bool,
+    shard: int | None = None,
+    any_code: bool = False,
 ) -> Session:
     """Check everything before anything runs; hold the folder meanwhile (``held``).
 
@@ -203,6 +207,8 @@ def run_session(
     backend = _backend(session, threads, scheduler)
     study, folder = session.study, session.folder
     total = study.design.total
+    usual = ON_A_CLUSTER if scheduler else shard_size(total, threads or cores())
+    size = session.shard or usual
     print(announcement(study, session.document), flush=True)
     doubt = warning(session.document)
     if doubt is not None:
@@ -212,7 +218,7 @@ def run_session(
     write_document({**session.document, "finished": False}, folder.path)
     with stage_bar() as bar:
         table, length = run_study(
-            study, folder, backend, session.shard, lambda done, whole: bar("trials", done, whole)
+            study, folder, backend, size, lambda done, whole: bar("trials", done, whole)
         )
     found = summary(study.config, study.design, table, study.case.outline.diameter)
     stopped = {"early": length.early, "at": length.at, "why": length.why}

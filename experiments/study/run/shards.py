@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
@@ -19,8 +20,15 @@ from experiments.study.run.rows import table_of, target_trials
 from experiments.study.run.shard import Study, run_trials
 from sim.world.engine import no_log
 
-SHARD: Final = 500
-"""[trial] In a shard, unless asked otherwise: a few seconds of work."""
+SHARD: Final = 1000
+"""[trial] In a shard at most, unless asked otherwise: a second or two of work. Half as many cost a
+fiftieth of the speed in files, four times as many gain nothing."""
+
+ON_A_CLUSTER: Final = 500
+"""[trial] In a shard of a cluster, of which nobody knows how many work there."""
+
+_FEWEST: Final = 250
+"""[trial] In a shard at least: below that files cost more than threads that wait at the end."""
 
 Span = tuple[int, int]
 """First and last trial."""
@@ -39,6 +47,15 @@ class Stopped:
     early: bool
     at: int
     why: str
+
+
+def shard_size(total: int, threads: int) -> int:
+    """How many trials a shard gets that nobody has asked for: two shards a thread or more.
+
+    >>> shard_size(100_000, 2), shard_size(3_000, 2), shard_size(300, 8)
+    (1000, 750, 250)
+    """
+    return min(SHARD, max(_FEWEST, math.ceil(total / (2 * threads))))
 
 
 def run_study(
