@@ -20,8 +20,8 @@ from experiments.figures.drawing.palette import (
     INK,
     OBJECT_EDGE,
     OBJECT_FILL,
+    ORANGE,
     PAPER,
-    QUIET_INK,
     RULE,
 )
 from experiments.figures.drawing.shapes import as_path, is_blank, tidied
@@ -114,8 +114,8 @@ class HandView:
         canvas.disc(hub, 3.0, PAPER)
 
     def _draw_goal(self, canvas: Canvas) -> None:
-        """Where the object will stand in the hand: a dashed outline."""
-        pen = Pen(QUIET_INK, 1.6, (5.0, 4.0))
+        """Where the object will stand in the hand: a dashed outline, orange as the camera's."""
+        pen = Pen(ORANGE, 2.2, (7.0, 4.0))
         canvas.path(self._object, self._place(self._goal), pen=pen)
 
 
