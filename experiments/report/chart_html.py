@@ -52,6 +52,8 @@ def _row(bar: Bar, chart: Chart, low: float, high: float, shown: Callable[[str],
         for line in chart.lines
     )
     drawn = f'<line class="span" x1="{left}" x2="{right}" y1="{_MIDDLE}" y2="{_MIDDLE}"/>'
+    for end in (left, right):
+        drawn += f'<line class="end" x1="{end}" x2="{end}" y1="7" y2="17"/>'
     if bar.value is not None:
         drawn += f'<circle class="dot" cx="{_at(bar.value, low, high)}" cy="{_MIDDLE}" r="5"/>'
     return (

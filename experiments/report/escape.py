@@ -96,9 +96,9 @@ def _level(document: Given, key: str, unit: str) -> str:
 
 
 def _beside(document: Given) -> str:
-    friction = document.maybe_number("friction")
+    friction, step = (document.maybe_number(key) for key in ("friction", "time_step"))
     return (
-        f"Seed {document.count('seed')}, time step {_or(document.maybe_number('time_step'), ' s')}, "
+        f"Seed {document.count('seed')}, time step {_or(step, ' s')}, "
         f"friction {_or(friction, '', 'not recorded')}. Deepest: of a finger inside the object, "
         "which is a false opening of that order; overrun: how far the stop gave way, over sigma."
     )

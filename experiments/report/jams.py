@@ -138,7 +138,7 @@ def _jams(cases: Sequence[Given], settings: str) -> Iterator[Part]:
             rows.append((
                 Cell(case.text("case")), number_cell(jam.number("sigma"), 6),
                 count_cell(jam.count("touching")), number_cell(jam.number("foretold"), 5),
-                number_cell(jam.number("slips_at"), 5), number_cell(jam.maybe_number("sticks_at"), 5),
+                *(number_cell(jam.maybe_number(key), 5) for key in ("slips_at", "sticks_at")),
                 Cell("-") if off is None else Cell(f"{100.0 * off:+.1f} %", off),
                 Cell(f"{weak[0]} of {weak[1]}", shares[0]),
                 Cell(f"{strong[0]} of {strong[1]}", shares[1]),

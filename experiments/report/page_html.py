@@ -84,6 +84,14 @@ def shown(text: str) -> str:
     return escape(printable(text))
 
 
+def _worded(text: str) -> str:
+    """A sentence in which what stands between backticks is code."""
+    parts = shown(text).split("`")
+    if len(parts) % 2 == 0:
+        return "`".join(parts)
+    return "".join(f"<code>{part}</code>" if k % 2 else part for k, part in enumerate(parts))
+
+
 def _isolated(text: str, name: str) -> str:
     """A sentence in which the direction of a name touches nothing around it."""
     if not name:
@@ -106,9 +114,9 @@ def _section(section: Section, k: int, numbers: Iterator[int]) -> str:
 def _part(part: Part, numbers: Iterator[int]) -> str:
     match part:
         case Words():
-            return f"<p>{shown(part.text)}</p>"
+            return f"<p>{_worded(part.text)}</p>"
         case Command():
-            return f"<p>{shown(part.words)}</p><pre><code>{shown(part.line)}</code></pre>"
+            return f"<p>{_worded(part.words)}</p><pre><code>{shown(part.line)}</code></pre>"
         case Table():
             return _table(part, next(numbers))
         case Chart():
@@ -131,7 +139,7 @@ def _table(table: Table, k: int) -> str:
             f'<p class="note">{len(table.rows)} rows are shown, {table.left_off} more are left '
             f"off: {shown(table.more_in)} has all.</p>"
         )
-    beside = f'<p class="note">{shown(table.beside)}</p>' if table.beside else ""
+    beside = f'<p class="note">{_worded(table.beside)}</p>' if table.beside else ""
     return (
         f'<div class="table"{filtered}><h3 id="table-{k}">{shown(table.title)}</h3>'
         f'<div class="scroll" role="region" aria-labelledby="table-{k}" tabindex="0">'

@@ -55,7 +55,7 @@ def regress_report(source: Source, page: Path) -> Report:
     failures = [(row, line) for row in rows for line in row.texts("failures")]
     beside = f"{_settings(rows)} {LEGEND}"
     sections = [
-        Section("Rates over all cases", tuple(_rates(rows))),
+        Section("Rates", tuple(_rates(rows))),
         Section("What did not hold", tuple(_failed(failures, level))),
         Section(
             "Cases", (Table.cut("Every case", _heads(), _cells(lines), beside, source.file.name),)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import pyarrow.compute as pc
 
 from experiments.io.arrow_table import Table as Rows
 from experiments.io.intervals import rate_upper, wilson
@@ -34,6 +33,7 @@ from experiments.report.content import (
 )
 from experiments.report.files import film, picture
 from experiments.report.given import Given
+from experiments.report.rows import occurrences, one_of, taken
 from experiments.report.shell import quoted, replay_trial
 from experiments.report.source import Source
 from experiments.study.report.names import percent
@@ -43,6 +43,8 @@ _FORMAT: Final = b"icage-trials/1"
 
 _OUTCOMES: Final = tuple(END_WORDS)
 _NOT_SETTLED: Final = ("timed_out", "diverged")
+_REACHED: Final = ("target",)
+_KNOWN: Final = ("target", "other_grasp")
 
 _COLUMNS: Final = (
     "run", "grasp", "set", "trial", "seed", "verdict", "outcome", "penetration_max",
@@ -126,19 +128,19 @@ def _friction(runs: Sequence[Given]) -> str:
 
 def _closings(runs: Sequence[Given], counts: Sequence[dict[str, int]], seed: int) -> Iterator[Part]:
     heads = (
-        Column("grasp"), Column("set"), Column("sigma_first / sigma_0", "number"),
-        Column("sigma_max / sigma_0", "number"), Column("trials", "number"),
-        Column("target", "number"), *RATES, Column("other grasp", "number"),
-        Column("escaped", "number"), Column("jammed", "number"), Column("unmatched", "number"),
-        Column("not settled", "number"), Column("deepest / diameter", "number"),
-        Column("at rest / diameter", "number"), Column("friction", "number"),
-        Column("time step [s]", "number"),
+        Column("grasp"), Column("set"), Column("trials", "number"), Column("target", "number"),
+        *RATES, Column("deepest / diameter", "number"), Column("at rest / diameter", "number"),
+        Column("friction", "number"), Column("time step [s]", "number"),
+        Column("other grasp", "number"), Column("escaped", "number"),
+        Column("elsewhere", "number"), Column("sigma_first / sigma_0", "number"),
+        Column("sigma_max / sigma_0", "number"),
     )  # fmt: skip
     rows = [_run(run, found) for run, found in zip(runs, counts, strict=True)]
     beside = (
-        f"Seed {seed}; intervals are Wilson's at 95 %; deepest: of a finger inside the object while "
-        "closing, and at rest. From the guaranteed set closing can end only in the target; from the "
-        "rest of the cage other grasps are within reach, and nothing may escape."
+        f"Seed {seed}; intervals are Wilson's at 95 %. Deepest: of a finger in the object, while "
+        "closing and at rest. From the guaranteed set closing can end only in the target; from the "
+        "rest of the cage other grasps are within reach, and nothing may escape. Elsewhere: "
+        "jammed, in a grasp that was not planned, or not settled."
     )
     yield Table.cut("Closings by grasp and set", heads, rows, beside, "replay.json")
     bars = [
@@ -162,15 +164,15 @@ def _run(run: Given, found: dict[str, int]) -> tuple[Cell, ...]:
     return (
         Cell(run.text("grasp")),
         Cell(_set(run)),
-        *(_ratio(plan, key) for key in ("sigma_first", "sigma_max")),
         count_cell(sum(found.values())),
         count_cell(found["target"]),
         *rate_cells(found["target"], sum(found.values())),
-        *(count_cell(found[key]) for key in ("other_grasp", "escaped", "jammed", "unmatched")),
-        count_cell(sum(found[key] for key in _NOT_SETTLED)),
         *(_share(run, key, size) for key in ("penetration_max", "penetration_rest_max")),
         number_cell(None if config is None else config.number("friction")),
         number_cell(run.number("time_step")),
+        *(count_cell(found[key]) for key in ("other_grasp", "escaped")),
+        count_cell(sum(found[key] for key in ("jammed", "unmatched", *_NOT_SETTLED))),
+        *(_ratio(plan, key) for key in ("sigma_first", "sigma_max")),
     )
 
 
@@ -198,13 +200,12 @@ def _rows(folder: Path, runs: Sequence[Given], counts: Sequence[dict[str, int]])
     missing = [name for name in _COLUMNS if name not in table.column_names]
     if missing:
         raise DamagedError(f"{str(path)!r} has no column {missing[0]!r}")
-    number, outcome = _column(table, "run"), _column(table, "outcome")
+    number = _column(table, "run")
     for k, found in enumerate(counts):
-        words, times = np.unique(outcome[number == k], return_counts=True)
-        there = dict(zip(words.tolist(), times.tolist(), strict=True))
+        there = occurrences(table["outcome"], number == k)
         if there != {word: count for word, count in found.items() if count}:
             raise DamagedError(f"{str(path)!r} has other trials than {runs[k].where} tells of")
-    if len(table) != sum(sum(found.values()) for found in counts):
+    if table.num_rows != sum(sum(found.values()) for found in counts):
         raise DamagedError(f"{str(path)!r} has trials of other runs")
     return table
 
@@ -236,29 +237,29 @@ def _failed(
     if cells:
         yield Table(
             "Trials that failed", heads, tuple(cells),
-            "Trial: the row of trials.parquet, from 0. `--video FILE.mp4` behind a command films it.",
+            "Trial: the row of trials.parquet, from 0. With `--video FILE.mp4` it is filmed.",
             found[0] - len(cells), TRIALS,
         )  # fmt: skip
 
 
 def _failed_rows(runs: Sequence[Given], rows: Rows) -> tuple[int, list[tuple[int, dict[str, Any]]]]:
     """How many trials failed, and the first of them with their place in the table."""
-    number, outcome = _column(rows, "run"), _column(rows, "outcome")
-    depth, at_rest = _column(rows, "penetration_max"), _column(rows, "penetration_rest")
-    bad = np.zeros(len(rows), dtype=np.bool_)
+    number, depth, at_rest = (
+        np.asarray(_column(rows, name), dtype=np.float64)
+        for name in ("run", "penetration_max", "penetration_rest")
+    )
+    reached, known = (one_of(rows["outcome"], words) for words in (_REACHED, _KNOWN))
+    moving = one_of(rows["outcome"], ("escaped", *_NOT_SETTLED))
+    bad = np.zeros(rows.num_rows, dtype=np.bool_)
     for k, run in enumerate(runs):
         mine, size, which = number == k, run.number("diameter"), run.text("set")
-        if which == "guaranteed":
-            bad |= mine & (outcome != "target")
-        elif which == "rest":
-            bad |= mine & ~np.isin(outcome, ("target", "other_grasp"))
-        resting = ~np.isin(outcome, ("escaped", *_NOT_SETTLED))
-        with np.errstate(invalid="ignore"):
-            bad |= mine & (depth.astype(np.float64) > DEEPEST_MOVING * size)
-            bad |= mine & resting & (at_rest.astype(np.float64) > DEEPEST_AT_REST * size)
+        if which in ("guaranteed", "rest"):
+            bad |= mine & ~(reached if which == "guaranteed" else known)
+        bad |= mine & (depth > DEEPEST_MOVING * size)  # null is no number, and no depth
+        bad |= mine & ~moving & (at_rest > DEEPEST_AT_REST * size)
     places = np.flatnonzero(bad)
     kept = places[:MOST_FAILURES]
-    listed = pc.take(rows.select(list(_COLUMNS)), kept).to_pylist()
+    listed = taken(rows, kept)
     return len(places), list(zip(kept.tolist(), listed, strict=True))
 
 

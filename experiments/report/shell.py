@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 from experiments.report.given import Given
 
@@ -67,15 +67,3 @@ def _value(word: str) -> str:
     except ValueError:
         return quoted(word)
     return shlex.quote(word)
-
-
-def given_of(args: Any) -> dict[str, Any]:
-    """How a command line named its case, for a document that is to be repeated from."""
-    from experiments.cases.reading import reading_of, reading_words
-
-    words = reading_words(reading_of(args))
-    if args.finger_radius is not None:
-        words += ["--finger-radius", repr(args.finger_radius)]
-    if args.grasp is not None:
-        words += ["--grasp", str(args.grasp)]
-    return {"case": args.case, "options": words}

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import pyarrow.compute as pc
 
 from experiments.io.arrow_table import Table as Rows
 from experiments.io.intervals import wilson
@@ -33,6 +32,7 @@ from experiments.report.content import (
 )
 from experiments.report.files import picture
 from experiments.report.given import Given
+from experiments.report.rows import occurrences, one_of, taken
 from experiments.report.shell import quoted, replay_trial
 from experiments.report.source import Source
 from experiments.study.inputs.variables import VARIABLES, label
@@ -118,10 +118,9 @@ def _rows(source: Source, found: Given) -> Rows | None:
     table = folder.finished()
     if table is None:
         return None
-    if len(table) != found.count("trials"):
+    if table.num_rows != found.count("trials"):
         raise DamagedError(f"{str(source.folder / TRIALS)!r} has other trials than study.json")
-    words, times = np.unique(table["outcome"].to_numpy(), return_counts=True)
-    there = dict(zip(words.tolist(), times.tolist(), strict=True))
+    there = occurrences(table["outcome"])
     if there != {word: count for word, count in _counts(found).items() if count}:
         raise DamagedError(f"{str(source.folder / TRIALS)!r} has other outcomes than study.json")
     return table
@@ -275,13 +274,13 @@ def _failed(source: Source, found: Given, rows: Rows | None, varied: list[str]) 
             "played with `icage replay-trial DIR TRIAL`."
         )
         return
-    outcome = rows["outcome"].to_numpy()
-    places = np.flatnonzero((outcome != "target") & ~np.isin(outcome, list(NOT_CLOSED)))
+    fine = one_of(rows["outcome"], ("target", *NOT_CLOSED))
+    places = np.flatnonzero(~fine)
     if len(places) != failed:
         raise DamagedError(f"{found.where}: failed is {failed}, the table has {len(places)}")
     kept = places[:MOST_FAILURES]
     names = [name for name in varied if name in rows.column_names][:_MOST_INPUTS]
-    listed = pc.take(rows, kept).to_pylist()
+    listed = taken(rows, kept)
     heads = (
         Column("trial", "number"), Column("seed", "number"), Column("ended"),
         *(Column(name.replace("_", " "), "number") for name in names),
@@ -289,7 +288,7 @@ def _failed(source: Source, found: Given, rows: Rows | None, varied: list[str]) 
         Column("plays it again", "command"),
     )  # fmt: skip
     cells = tuple(_trial(source, row, names) for row in listed)
-    beside = "`--video FILE.mp4` behind a command films it; lengths in the case's unit, angles rad."
+    beside = "With `--video FILE.mp4` it is filmed. Lengths in the case's unit, angles in rad."
     yield Table("Failed trials", heads, cells, beside, len(places) - len(kept), TRIALS)
 
 
