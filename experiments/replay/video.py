@@ -26,6 +26,7 @@ from experiments.replay.what_is_filmed import Filmed
 from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
+from icage.errors import LibraryError
 from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
 from sim.camera.stage import Decor, View
 from sim.world.scene import Scene
@@ -131,6 +132,7 @@ def _photographed(
 
     def paint(canvas: Canvas, frame: int) -> None:
         canvas.paste(taken.at(min(max(frame - first, 0), last - first)), 0, 0)
+        hand.draw_goal(canvas)
         hand.draw_numbers(canvas, clip.qpos[frame])
 
     return paint
@@ -148,13 +150,13 @@ class Photographs:
         cage: Cage, stack: ExitStack, scale: float,
     ) -> Photographs | None:  # fmt: skip
         """Of positions (F, 6) through a window of units of ``scale`` pixels, with the regions on
-        the floor and the target's outline; None if the renderer fails.
+        the floor; None if the renderer fails. The target is drawn over them: in the scene its line
+        would throw a shadow.
         """
         detail = 2e-3 * cage.outline.diameter
         decor = Decor(
             [(r.finger, tidied(r.geometry, detail)) for r in regions
-             if r.level_name != "sigma_first"],
-            cage.target_placement,
+             if r.level_name != "sigma_first"]
         )  # fmt: skip
         sized = replace(
             window, width=round(scale * window.width), height=round(scale * window.height)
@@ -167,8 +169,17 @@ class Photographs:
             return None
 
     def at(self, number: int) -> NDArray[np.uint8]:
-        """Frame ``number``, never before the last that was asked for."""
+        """Frame ``number``, never before the last that was asked for.
+
+        Raises
+        ------
+        LibraryError:
+            The camera has ended half way: killed, or its driver gave up.
+        """
         while self._number < number:
-            self._last = next(self._frames)
+            try:
+                self._last = next(self._frames)
+            except RenderingUnavailable as error:
+                raise LibraryError(f"MuJoCo's camera has ended before its film: {error}") from error
             self._number += 1
         return self._last

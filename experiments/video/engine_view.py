@@ -38,6 +38,7 @@ def engine_view(
                 hand.draw(canvas, qpos[k], qpos[0])
             else:
                 canvas.paste(taken.at(k), 0, 0)
+                hand.draw_goal(canvas)
                 hand.draw_numbers(canvas, qpos[k])
 
         yield paint, window
