@@ -42,6 +42,7 @@ from experiments.study.report.results_md import LONGEST
 from experiments.study.report.summary import sentence
 from experiments.study.run.command import command_line
 from experiments.study.run.document import fingerprint, parsed_document
+from experiments.study.run.finished import is_finished
 from experiments.study.run.folder import TRIALS, StudyFolder
 from icage.errors import InputError
 
@@ -62,7 +63,7 @@ def study_report(source: Source, page: Path) -> Report:
     document = source.document
     case, config = parsed_document(document)  # every value of it checked
     whole = Given(document, str(source.file))
-    if not whole.has("finished") or not whole.flag("finished") or not whole.has("found"):
+    if not is_finished(document):
         raise InputError(
             f"{source.named!r} holds a study that is not finished; "
             f"`icage study --resume --out {quoted(source.named)}` goes on with it"
