@@ -95,7 +95,7 @@ def _run(arguments: Sequence[str] | None, asked: Asked) -> int:
         _forget_output()
         return 1
     except Exception as error:
-        if isinstance(error, SystemError) and _is_interrupt(error):
+        if asked.number or (isinstance(error, SystemError) and _is_interrupt(error)):
             return _interrupted(asked)
         gave_out = what_gave_out(error)
         if gave_out:
@@ -150,7 +150,11 @@ def _forget_output() -> None:
 
 
 def _is_interrupt(error: BaseException | None) -> bool:
-    """Whether an interrupt is behind it: inside a compiled function it becomes a SystemError."""
+    """Whether an interrupt is behind it: inside a compiled function it becomes a SystemError.
+
+    Imports of some libraries make other errors of it, of which only the signals that are counted
+    (``Asked``) tell.
+    """
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None
