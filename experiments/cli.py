@@ -161,6 +161,9 @@ def _is_interrupt(error: BaseException | None) -> bool:
 
 
 def _interrupted(asked: Asked) -> int:
+    # An interrupt that met text being run, as some libraries do in their import, is remembered by
+    # Python, which then ends by SIGINT whatever we return; running any text makes it forget.
+    exec("0")
     _say("terminated" if asked.number else "interrupted")
     return asked.code or 128 + signal.SIGINT
 

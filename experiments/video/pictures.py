@@ -92,7 +92,7 @@ class Gif:
         """Write them as a GIF file that begins again at its end."""
         some = np.linspace(0, len(self.kept) - 1, min(_SAMPLED, len(self.kept))).round().astype(int)
         mosaic = Image.fromarray(np.vstack([np.asarray(self.kept[k]) for k in some.tolist()]))
-        colours = mosaic.quantize(_COLOURS, method=Image.Quantize.MAXCOVERAGE)
+        colours = mosaic.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=1)
         plain = [one.quantize(palette=colours, dither=Image.Dither.NONE) for one in self.kept]
         pause = round(1000.0 * self.every / self.fps)
         plain[0].save(
