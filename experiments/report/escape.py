@@ -43,7 +43,7 @@ def escape_report(source: Source, page: Path) -> Report:
     """The page of ``icage escape``."""
     document = Given(source.document, str(source.file))
     failures = document.texts("failures")
-    name, unit, size = document.text("case"), document.text("unit"), document.number("diameter")
+    name, unit, size = document.text("case"), document.text("unit"), document.positive("diameter")
     sections = [
         Section("Attacks", tuple(_attacks(document, unit, size))),
         Section("Where escapes begin", tuple(_measured(document, unit, size))),

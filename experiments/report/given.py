@@ -58,6 +58,12 @@ class Given:
             raise self._wrong(key, "a finite number")
         return number
 
+    def positive(self, key: str) -> float:
+        """A finite number above zero: something is divided by it."""
+        if not self.number(key) > 0.0:
+            raise self._wrong(key, "a number above 0")
+        return self.number(key)
+
     def maybe_number(self, key: str) -> float | None:
         """A finite number, or None where there is none."""
         return self.number(key) if self.has(key) else None

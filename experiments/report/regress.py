@@ -43,6 +43,8 @@ def regress_report(source: Source, page: Path) -> Report:
     try:
         answer = f"{bottom_line(plain)}."
         lines = table(plain)[1:]
+        if not all(isinstance(text, str) for line in lines for text in line):  # pyright: ignore
+            raise TypeError("a name is no text")
     except (
         KeyError,
         TypeError,

@@ -159,7 +159,7 @@ def _set(run: Given) -> str:
 
 
 def _run(run: Given, found: dict[str, int]) -> tuple[Cell, ...]:
-    plan, size = run.part("plan"), run.number("diameter")
+    plan, size = run.part("plan"), run.positive("diameter")
     config = run.maybe_part("config")
     return (
         Cell(run.text("grasp")),
@@ -180,7 +180,7 @@ def _ratio(plan: Given, key: str) -> Cell:
     level = plan.maybe_number(key)
     if level is None:
         return Cell("never")
-    ratio = level / plan.number("sigma_0")
+    ratio = level / plan.positive("sigma_0")
     return Cell(f"{ratio:.5f}", ratio)
 
 
@@ -252,7 +252,7 @@ def _failed_rows(runs: Sequence[Given], rows: Rows) -> tuple[int, list[tuple[int
     moving = one_of(rows["outcome"], ("escaped", *_NOT_SETTLED))
     bad = np.zeros(rows.num_rows, dtype=np.bool_)
     for k, run in enumerate(runs):
-        mine, size, which = number == k, run.number("diameter"), run.text("set")
+        mine, size, which = number == k, run.positive("diameter"), run.text("set")
         if which in ("guaranteed", "rest"):
             bad |= mine & ~(reached if which == "guaranteed" else known)
         bad |= mine & (depth > DEEPEST_MOVING * size)  # null is no number, and no depth

@@ -30,7 +30,7 @@ def shake_report(source: Source, page: Path) -> Report:
     """The page of ``icage shake``."""
     document = Given(source.document, str(source.file))
     failures = document.texts("failures")
-    name, unit, size = document.text("name"), document.text("unit"), document.number("diameter")
+    name, unit, size = document.text("name"), document.text("unit"), document.positive("diameter")
     shaken = document.maybe_part("shake")
     config = document.part("config")
     deepest = None if shaken is None else shaken.number("penetration_max")
@@ -101,7 +101,9 @@ def _pushes(document: Given, shaken: Given | None, unit: str, size: float) -> It
         Column("push"), Column(f"moved [{unit}]", "number"), Column("over the diameter", "number"),
         Column("turned [rad]", "number"),
     )  # fmt: skip
-    shares = [100.0 * one.number("displacement") / limit.number("displacement") for _, one in named]
+    shares = [
+        100.0 * one.number("displacement") / limit.positive("displacement") for _, one in named
+    ]
     bars = [
         Bar(name, 0.0, share, share, f"{share:.2g} %")
         for (name, _), share in zip(named, shares, strict=True)

@@ -155,7 +155,7 @@ def _deepest(whole: Given, found: Given) -> str:
 
 def _conditions(whole: Given, found: Given) -> str:
     """What stands beside every rate."""
-    config, size = whole.part("config"), whole.number("diameter")
+    config, size = whole.part("config"), whole.positive("diameter")
     deep, rest = (found.maybe_number(f"penetration_{key}") for key in ("max", "rest_max"))
     depths = "nothing was closed"
     if deep is not None and rest is not None:

@@ -284,7 +284,10 @@ def broken(text: str, key: str, value: Any) -> str:
         ("jams.json", "target", 10**6), ("jams.json", "config", None),
         ("jams.json", "residual", True), ("jams.json", "format", "icage-jams/2"),
         ("replay/replay.json", "runs", []), ("replay/replay.json", "runs/trials", 9),
-        ("replay/replay.json", "runs/diameter", "wide"), ("replay/replay.json", "runs/plan", None),
+        ("replay/replay.json", "runs/diameter", "wide"),
+        ("replay/replay.json", "runs/diameter", 0), ("shake.json", "criterion/displacement", 0),
+        ("replay/replay.json", "runs/sigma_0", 0), ("escape.json", "diameter", -1),
+        ("replay/replay.json", "runs/plan", None), ("regress.json", "case", {}),
         ("study/study.json", "found", None), ("study/study.json", "config", {}),
         ("study/study.json", "finished", False), ("study/study.json", "outcomes", {"target": 40}),
         ("study/study.json", "independent", {"trials": 1, "closed": 2, "target": 3}),
@@ -421,3 +424,28 @@ def test_numbers_are_sorted_as_numbers(read: Callable[[str], Elements]) -> None:
     keys = [v for tag, name, v in read("replay").attributes if name == "data-key"]
     assert keys
     assert np.isfinite([float(key or "nan") for key in keys]).all()
+
+
+ODD = (None, True, -1, 0, 1e308, 10**30, "", "<b>", [], {}, [[]], [{}], [1, 2], 0.5, 2**63)
+
+
+@pytest.mark.parametrize("kind", ["escape.json", "shake.json", "regress.json", "jams.json"])
+def test_any_value_of_a_document_may_be_another(
+    kind: str, runs: Path, tmp_path: Path, capsys: Any
+) -> None:
+    """A page, or one line; never our fault."""
+    rng = np.random.default_rng(1)
+    whole, file = (runs / kind).read_text(), tmp_path / "x.json"
+    for _ in range(25):
+        document = json.loads(whole)
+        part: Any = document
+        while True:
+            keys = list(part) if isinstance(part, dict) else list(range(len(part)))
+            key = keys[rng.integers(len(keys))]
+            if not (isinstance(part[key], dict | list) and part[key]) or rng.random() < 0.15:
+                break
+            part = part[key]
+        part[key] = ODD[rng.integers(len(ODD))]
+        file.write_text(json.dumps(document))
+        result = here(capsys, "report", str(file))
+        assert result.code == 0 or result.error_line(), (key, part[key])
