@@ -95,13 +95,15 @@ def _run(arguments: Sequence[str] | None, asked: Asked) -> int:
         _forget_output()
         return 1
     except Exception as error:
-        if asked.number or (isinstance(error, SystemError) and _is_interrupt(error)):
+        if isinstance(error, SystemError) and _is_interrupt(error):
             return _interrupted(asked)
         gave_out = what_gave_out(error)
         if gave_out:
             _say(gave_out)
             _forget_output()
             return 2
+        if asked.number or asked.interrupted:  # libraries make other errors of it in their import
+            return _interrupted(asked)
         if os.environ.get("ICAGE_DEBUG"):
             raise
         reason = f"{type(error).__name__}: {error}"
@@ -150,11 +152,7 @@ def _forget_output() -> None:
 
 
 def _is_interrupt(error: BaseException | None) -> bool:
-    """Whether an interrupt is behind it: inside a compiled function it becomes a SystemError.
-
-    Imports of some libraries make other errors of it, of which only the signals that are counted
-    (``Asked``) tell.
-    """
+    """Whether an interrupt is behind it: inside a compiled function it becomes a SystemError."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None
