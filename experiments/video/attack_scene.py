@@ -17,6 +17,7 @@ from experiments.replay.film_page import (
     BOTTOM,
     LEFT,
     LOWER,
+    SHADES,
     draw_badge,
     draw_headline,
     sigma_plot,
@@ -39,8 +40,6 @@ none of the attacks escapes."""
 
 _EVERY = 10
 """[step] Between two positions that are kept."""
-
-CAPTION = "shaded: where each finger may be in the cage;   orange: the target grasp"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +86,7 @@ def attack_scene(subject: Subject, canvas: Canvas) -> Iterator[None]:
     small = ObjectView(cage, subject.regions, placements[::10], BOTTOM)
     over = opening / cage.sigma_max
     about = f"hand held at {over:.4f} sigma_max, {subject.about_fingers}"
-    draw_still(canvas, subject, about, [plot, far], CAPTION)
+    draw_still(canvas, subject, about, [plot, far], SHADES)
     canvas.text(LEFT, BOTTOM[1] - 9.0, "seen from the object", 15.0, INK)
     small.draw_still(canvas)
     still = canvas.pixels.copy()

@@ -10,8 +10,8 @@ from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.object_view import ObjectView
 from experiments.figures.drawing.palette import INK, QUIET_INK
 from experiments.figures.drawing.plots import Plot
-from experiments.replay.film_page import UPPER, draw_headline, sigma_plot
-from experiments.video.plan_scene import CAPTION, main_box
+from experiments.replay.film_page import SHADES, UPPER, draw_headline, sigma_plot
+from experiments.video.plan_scene import main_box
 from experiments.video.scene_page import draw_still, draw_table, level_rows, still_ends
 from experiments.video.subject import Subject
 from icage.sampling import draw_starts
@@ -38,7 +38,7 @@ def placements_scene(subject: Subject, canvas: Canvas) -> Iterator[None]:
     levels = sigma_plot(cage, starts[:, 3])
     plot = Plot(UPPER, r"opening $\sigma$ of each placement", 1.0, levels.y_range, levels.levels)
     about = f"random placements of the open hand, {subject.about_fingers}"
-    draw_still(canvas, subject, about, [plot], CAPTION)
+    draw_still(canvas, subject, about, [plot], SHADES)
     draw_table(canvas, "levels of the opening", level_rows(subject))
     view.draw_still(canvas)
     view.draw_goal(canvas, cage.target_placement.as_array())

@@ -11,7 +11,7 @@ from experiments.figures.drawing.object_view import ObjectView
 from experiments.figures.drawing.palette import BAD, INK
 from experiments.replay.film_page import (
     MAIN,
-    UPPER,
+    SHADES,
     draw_badge,
     draw_headline,
     sigma_plot,
@@ -30,8 +30,6 @@ from sim.attack.guided import object_path
 _AT_LEVEL = 1e-6
 """[1] A level counts as reached this near below it: the puncture is on it but for rounding."""
 
-CAPTION = "shaded: where each finger may be;   orange: the target grasp"
-
 
 def plan_scene(subject: Subject, canvas: Canvas) -> Iterator[None]:
     """A frame of the film on the canvas at every step."""
@@ -42,7 +40,7 @@ def plan_scene(subject: Subject, canvas: Canvas) -> Iterator[None]:
     view = ObjectView(cage, subject.regions, way[:: max(len(way) // 20, 1)], main_box())
     plot = sigma_plot(cage, way[:, 3])
     about = f"the plan's way out, {subject.about_fingers}"
-    draw_still(canvas, subject, about, [plot], CAPTION)
+    draw_still(canvas, subject, about, [plot], SHADES)
     draw_table(canvas, "levels of the opening", level_rows(subject))
     view.draw_still(canvas)
     view.draw_goal(canvas, cage.target_placement.as_array())
@@ -94,6 +92,3 @@ def _sentence(
     if cage.sigma_first is not None and widest >= (1.0 - _AT_LEVEL) * cage.sigma_first:
         return "above sigma_first: still caged, but closing may end in another grasp", INK
     return "below sigma_first: closing can end only in the target grasp", INK
-
-
-__all__ = ["CAPTION", "UPPER", "main_box", "plan_scene", "way_out"]
