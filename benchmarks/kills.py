@@ -3,10 +3,11 @@
     python -m benchmarks.kills --kills 20 --json benchmarks/kills.json
     python -m benchmarks.kills --ends 12 --json benchmarks/ends.json
 
-With ``--ends`` study, replay with video, grasps of a folder, regress and figures are each ended so
-many times, by SIGKILL, SIGTERM and Ctrl-C in turn, at any moment of their work. Nothing that was
-there may be lost, no process may be left ten seconds later, and one run more has to give what an
-undisturbed one gives, and to leave nothing else in its folder or among temporary files.
+With ``--ends`` study, replay with video, grasps of a folder, regress, report, video and figures are
+each ended so many times, by SIGKILL, SIGTERM and Ctrl-C in turn, at any moment of their work.
+Nothing that was there may be lost, no process may be left ten seconds later, and one run more has
+to give what an undisturbed one gives, and to leave nothing else in its folder or among temporary
+files.
 
 Without it a study is killed with SIGKILL until it is done.
 
@@ -36,7 +37,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--shard", type=int, default=5)
-    parser.add_argument("--ends", type=int, help="end each of five commands so many times instead")
+    parser.add_argument("--ends", type=int, help="end each command so many times instead")
     parser.add_argument("--only", default="", help="of these, the one whose name begins so")
     parser.add_argument("--json", type=Path, help="write what was done")
     chosen = parser.parse_args()

@@ -102,6 +102,8 @@ def _run(arguments: Sequence[str] | None, asked: Asked) -> int:
             _say(gave_out)
             _forget_output()
             return 2
+        if asked.number or asked.interrupted:  # libraries make other errors of it in their import
+            return _interrupted(asked)
         if os.environ.get("ICAGE_DEBUG"):
             raise
         reason = f"{type(error).__name__}: {error}"
@@ -157,6 +159,9 @@ def _is_interrupt(error: BaseException | None) -> bool:
 
 
 def _interrupted(asked: Asked) -> int:
+    # An interrupt that met text being run, as some libraries do in their import, is remembered by
+    # Python, which then ends by SIGINT whatever we return; running any text makes it forget.
+    exec("0")
     _say("terminated" if asked.number else "interrupted")
     return asked.code or 128 + signal.SIGINT
 

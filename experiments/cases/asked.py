@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from experiments.cases.reading import add_reading, reading_of, say_notes
+from experiments.cases.reading import add_reading, reading_of, reading_words, say_notes
 from experiments.io.options import count, file_name, not_negative
 
 if TYPE_CHECKING:
@@ -55,6 +55,16 @@ def case_of(args: argparse.Namespace) -> Case:
     )
     say_notes(case)
     return case
+
+
+def given_of(args: argparse.Namespace) -> dict[str, Any]:
+    """How the command named its case, for a document: whoever has it can ask again."""
+    words = reading_words(reading_of(args))
+    if args.finger_radius is not None:
+        words += ["--finger-radius", repr(args.finger_radius)]
+    if args.grasp is not None:
+        words += ["--grasp", str(args.grasp)]
+    return {"case": args.case, "options": words}
 
 
 def size_words(thing: Case) -> str:

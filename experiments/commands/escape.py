@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from experiments.cases.asked import add_case, case_of
+from experiments.cases.asked import add_case, case_of, given_of
 from experiments.io.options import add_json, check_output, count, seed
 
 
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     with stage_bar() as report:
         result = escape(case, args.attacks, args.seed, args.threads or 0, report)
     if args.json is not None:
-        write_json(escape_document(result), args.json)
+        write_json({**escape_document(result), "given": given_of(args)}, args.json)
     if args.json != "-":
         print("\n".join(escape_table(result)))
     for sentence in result.failures:

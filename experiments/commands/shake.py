@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from experiments.cases.asked import add_case, case_of
+from experiments.cases.asked import add_case, case_of, given_of
 from experiments.io.options import add_json, check_output, seed
 
 
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"icage: shake failed: {error}", file=sys.stderr)
         return 1
     if args.json is not None:
-        write_json(shake_document(done), args.json)
+        write_json({**shake_document(done), "given": given_of(args)}, args.json)
     if args.json != "-":
         print("\n".join(shake_summary(done)))
     for sentence in done.failures:

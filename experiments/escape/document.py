@@ -40,6 +40,7 @@ def escape_document(result: Escape) -> dict[str, Any]:
         "seed": result.seed,
         "attackers": {a.attacker: _of_attacker(a, unit) for a in result.attackers},
         "penetration_max": result.penetration_max * unit,
+        "friction": None if config is None else config.friction,
         "time_step": None if config is None else config.time_step,
         "solref": None if config is None else list(config.solref),
         "solimp": None if config is None else list(config.solimp),

@@ -7,12 +7,11 @@ their imports are dropped, and every name at their top is theirs alone.
 from __future__ import annotations
 
 import re
-from base64 import b64encode
-from hashlib import sha256
 from html import escape
 from pathlib import Path
 from typing import Any, Final
 
+from experiments.io.page_policy import page_policy
 from icage.errors import InputError
 from icage.formats.json_out import json_text
 
@@ -61,7 +60,7 @@ def page_html(document: dict[str, Any], summary: str) -> str:
     script, style = module_text() + _START, style_text()
     name = document["plan"]["name"] or "object"
     html = _TEMPLATE.format(
-        policy=_policy(script, style),
+        policy=page_policy(script, style),
         title=escape(f"{name}: how far may the hand open?"),
         style=style,
         summary=escape(summary),
@@ -87,17 +86,6 @@ def _data(document: dict[str, Any]) -> str:
     for character in "<>&\u2028\u2029":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return text
-
-
-def _policy(script: str, style: str) -> str:
-    return (
-        f"default-src 'none'; script-src {_fingerprint(script)}; style-src {_fingerprint(style)}; "
-        "base-uri 'none'; form-action 'none'"
-    )
-
-
-def _fingerprint(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
 
 
 _TEMPLATE = """<!DOCTYPE html>

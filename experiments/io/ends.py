@@ -16,9 +16,10 @@ _NAMES: Final = ("SIGTERM", "SIGHUP")
 
 @dataclass(slots=True)
 class Asked:
-    """Which signal asked this process to end, if any did."""
+    """Which signal asked this process to end, if any did; ``interrupted``: Ctrl-C came, too."""
 
     number: int = 0
+    interrupted: bool = False
 
     @property
     def code(self) -> int:
@@ -29,6 +30,9 @@ class Asked:
 @contextmanager
 def asked_to_end() -> Generator[Asked]:
     """Within the block the first such signal is a ``KeyboardInterrupt``; others let it tidy up.
+
+    Ctrl-C is one every time, as ever; that it came is noted, because some libraries make another
+    error of it.
 
     A signal that whoever started this process ignores (``nohup``) or handles stays theirs.
     """
@@ -42,12 +46,21 @@ def asked_to_end() -> Generator[Asked]:
             asked.number = number
             raise KeyboardInterrupt
 
+    def note(number: int, frame: FrameType | None) -> None:
+        asked.interrupted = True
+        signal.default_int_handler(number, frame)
+
     found = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
     mine = [number for number in found if signal.getsignal(number) is signal.SIG_DFL]
     for number in mine:
         signal.signal(number, interrupt)
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if usual:
+        signal.signal(signal.SIGINT, note)
     try:
         yield asked
     finally:
         for number in mine:
             signal.signal(number, signal.SIG_DFL)
+        if usual:
+            signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -82,6 +82,11 @@ def clip_alone(filmed: Filmed) -> Clip:
     return _clip(filmed, round(FPS * max(_SECONDS / _FEWEST, _SHORTEST)))
 
 
+def clip_of_length(filmed: Filmed, frames: int) -> Clip:
+    """A closing in so many frames."""
+    return _clip(filmed, frames)
+
+
 def _shown(run: Run, count: int) -> list[int]:
     trials = list(range(min(count, len(run.closings))))
     elsewhere = np.flatnonzero(run.verdicts.outcome != OUTCOMES.index("target"))

@@ -11,9 +11,20 @@ from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.caption import level_digits
 from experiments.figures.drawing.numbers import significant
 from experiments.figures.drawing.object_view import ObjectView
-from experiments.figures.drawing.palette import BAD, FINGERS, GOOD, INK, PAPER, QUIET_INK, RULE
+from experiments.figures.drawing.palette import (
+    BAD,
+    FINGERS,
+    GOOD,
+    INK,
+    PAPER,
+    QUIET_INK,
+    RULE,
+    Colour,
+)
 from experiments.figures.drawing.plots import Box, Curve, Level, Plot
+from experiments.io.one_line import printable
 from experiments.replay.what_is_filmed import Filmed
+from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.regions import FingerRegion
 
@@ -25,10 +36,15 @@ WIDTH, HEIGHT = 1280, 720
 MAIN: Final = (840, 632)
 """Width and height of the main view, in the top left corner."""
 
-_LEFT, _RIGHT = 880.0, 1262.0
-_SIGMA: Final[Box] = (_LEFT, 134.0, 1196.0, 258.0)
-_FORCE: Final[Box] = (_LEFT, 306.0, 1196.0, 402.0)
-_OBJECT: Final[Box] = (_LEFT, 450.0, _RIGHT, 628.0)
+LEFT, RIGHT = 880.0, 1262.0
+"""Edges of the right column."""
+
+UPPER: Final[Box] = (LEFT, 134.0, 1196.0, 258.0)
+LOWER: Final[Box] = (LEFT, 306.0, 1196.0, 402.0)
+BOTTOM: Final[Box] = (LEFT, 450.0, RIGHT, 628.0)
+"""Places of its two plots, and of what is below them."""
+
+SHADES: Final = "shaded: where each finger's centre may be in the cage;   orange: the target grasp"
 
 _LONGEST_NAME = 40
 """Characters of a name in the title."""
@@ -48,28 +64,22 @@ class Page:
         self._name, self._clips = name, clips
         cage = clips[0].filmed.cage
         self._object = ObjectView(
-            cage, regions, np.array([clip.placements[0] for clip in clips]), _OBJECT
+            cage, regions, np.array([clip.placements[0] for clip in clips]), BOTTOM
         )
         self._plots = [_sigma_plot(cage, clip) for clip in clips]
         self._forces = [_force_plot(clip) for clip in clips]
 
     def draw_still(self, canvas: Canvas, number: int) -> None:
         """What does not change during clip ``number``: everything, on a fresh page."""
-        canvas.pixels[:] = 255
         clip = self._clips[number]
-        canvas.line([[MAIN[0] + 1, 20], [MAIN[0] + 1, MAIN[1] - 12]], RULE, 1.2)
-        title = _short(clip.filmed.grasp)
-        size = min(24.0, _TITLE_WIDTH / len(title))
-        canvas.text(_LEFT, 42.0, title, size, INK, bold=True)
-        about = clip.filmed.about
-        canvas.text(_LEFT, 70.0, about, min(17.0, _ABOUT_WIDTH / len(about)), QUIET_INK)
+        draw_title(canvas, clip.filmed.grasp, clip.filmed.about)
         self._plots[number].draw_frame(canvas)
         self._forces[number].draw_frame(canvas)
-        canvas.text(_LEFT, _OBJECT[1] - 9.0, "seen from the object", 15.0, INK)
+        canvas.text(LEFT, BOTTOM[1] - 9.0, "seen from the object", 15.0, INK)
         self._object.draw_still(canvas)
         for earlier in self._clips[:number]:
             self._object.draw_ways(canvas, earlier.placements, 0.45)
-        _draw_caption(canvas, clip.filmed.cage)
+        draw_caption(canvas, clip.filmed.cage, SHADES)
 
     def draw_now(self, canvas: Canvas, number: int, frame: int) -> None:
         """What has happened up to a frame."""
@@ -82,13 +92,26 @@ class Page:
         self._object.draw_ways(canvas, clip.placements[: frame + 1], 1.0)
         self._object.draw_fingers(canvas, clip.placements[frame])
         over = now >= 1.0
-        _draw_headline(canvas, clip.filmed, over)
+        _draw_outcome(canvas, clip.filmed, over)
         if over:
             _draw_badge(canvas, clip.filmed)
 
 
+def draw_title(canvas: Canvas, name: str, about: str) -> None:
+    """A fresh page with the name of what is filmed, and a quiet line below it."""
+    canvas.pixels[:] = 255
+    canvas.line([[MAIN[0] + 1, 20], [MAIN[0] + 1, MAIN[1] - 12]], RULE, 1.2)
+    title = _short(printable(name))
+    canvas.text(LEFT, 42.0, title, min(24.0, _TITLE_WIDTH / len(title)), INK, bold=True)
+    canvas.text(LEFT, 70.0, about, min(17.0, _ABOUT_WIDTH / len(about)), QUIET_INK)
+
+
 def _sigma_plot(cage: Cage, clip: Clip) -> Plot:
-    sigma = clip.placements[:, 3]
+    return sigma_plot(cage, clip.placements[:, 3])
+
+
+def sigma_plot(cage: Cage, sigma: FloatArray) -> Plot:
+    """A plot of openings (F,) with the cage's levels."""
     levels = [Level(cage.sigma_0, r"$\sigma_0$", QUIET_INK)]
     if cage.sigma_first is not None:
         same = cage.sigma_first == cage.sigma_max
@@ -98,14 +121,14 @@ def _sigma_plot(cage: Cage, clip: Clip) -> Plot:
         levels.append(Level(cage.sigma_max, r"$\sigma_{\mathrm{max}}$"))
     values = [*sigma, *(level.value for level in levels)]
     low, high = min(values), max(values)
-    room = 0.08 * (high - low)
-    return Plot(_SIGMA, r"opening $\sigma$ over time", 1.0, (low - room, high + room), levels)
+    room = 0.08 * (high - low) or 0.01 * high
+    return Plot(UPPER, r"opening $\sigma$ over time", 1.0, (low - room, high + room), levels)
 
 
 def _force_plot(clip: Clip) -> Plot:
     """Impacts may leave the plot; what counts is how the hand presses in the end."""
     high = 1.25 * max(float(np.quantile(clip.forces, 0.97)), float(clip.forces[-1].max()), 1e-9)
-    return Plot(_FORCE, "finger forces over time", 1.0, (0.0, high))
+    return Plot(LOWER, "finger forces over time", 1.0, (0.0, high))
 
 
 def _draw_badge(canvas: Canvas, filmed: Filmed) -> None:
@@ -113,22 +136,31 @@ def _draw_badge(canvas: Canvas, filmed: Filmed) -> None:
     words = {"target": "target grasp", "other_grasp": "another grasp"}.get(
         filmed.outcome, filmed.outcome.replace("_", " ")
     )
-    good = filmed.good
+    draw_badge(canvas, words, filmed.good)
+
+
+def draw_badge(canvas: Canvas, words: str, good: bool) -> None:
+    """A word in the corner of the main view, with a sign and a colour."""
     place, text = (32.0, 46.0), f"{'✓' if good else '✗'} {words}"
     wide = canvas.text(*place, text, 19.0, PAPER, bold=True)  # how wide it is
     canvas.box((20.0, 20.0, 44.0 + wide, 58.0), GOOD if good else BAD)
     canvas.text(*place, text, 19.0, PAPER, bold=True)
 
 
-def _draw_headline(canvas: Canvas, filmed: Filmed, over: bool) -> None:
+def _draw_outcome(canvas: Canvas, filmed: Filmed, over: bool) -> None:
     """How it ended only when it has ended."""
-    text = filmed.after if over else filmed.before
     told = filmed.before == filmed.after or over
-    ink = BAD if told and not filmed.after_good else INK
+    text = filmed.after if over else filmed.before
+    draw_headline(canvas, text, BAD if told and not filmed.after_good else INK)
+
+
+def draw_headline(canvas: Canvas, text: str, ink: Colour = INK) -> None:
+    """The sentence below the pictures."""
     canvas.text(24.0, 674.0, text, 21.0, ink, bold=True)
 
 
-def _draw_caption(canvas: Canvas, cage: Cage) -> None:
+def draw_caption(canvas: Canvas, cage: Cage, words: str) -> None:
+    """The levels of the cage, and what the colours mean."""
     canvas.line([[20, MAIN[1] + 6], [WIDTH - 20, MAIN[1] + 6]], RULE, 1.2)
     levels = [
         rf"{name} = {significant(level / cage.sigma_0, level_digits(cage))} $\sigma_0$"
@@ -138,8 +170,7 @@ def _draw_caption(canvas: Canvas, cage: Cage) -> None:
         )
         if level is not None
     ]
-    shades = "shaded: where each finger's centre may be in the cage;   orange: the target grasp"
-    canvas.text(24.0, 704.0, ",   ".join([*levels, shades]), 16.0, QUIET_INK, math=True)
+    canvas.text(24.0, 704.0, ",   ".join([*levels, words]), 16.0, QUIET_INK, math=True)
 
 
 def _short(name: str) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -22,9 +23,13 @@ from experiments.replay.film_page import HEIGHT, MAIN, WIDTH, Page
 from experiments.replay.mp4 import write_mp4
 from experiments.replay.run import Replay, Report
 from experiments.replay.what_is_filmed import Filmed
+from icage.arrays import FloatArray
+from icage.cage import Cage
 from icage.cells.regions import FingerRegion
+from icage.errors import LibraryError
 from sim.camera.renderer import RenderingUnavailable, find_backend, render_frames
 from sim.camera.stage import Decor, View
+from sim.world.scene import Scene
 
 SIZE: Final = (WIDTH, HEIGHT)
 
@@ -63,7 +68,8 @@ def _write(
     use_camera = find_backend() is not None if camera is None else camera
 
     def counted() -> Iterator[Pixels]:
-        for number, frame in enumerate(_frames(chosen, name, regions, use_camera)):
+        canvas = Canvas(WIDTH, HEIGHT)
+        for number, frame in enumerate(closing_frames(canvas, chosen, name, regions, use_camera)):
             report("video", number, total)
             yield frame
         report("video", total, total)
@@ -71,11 +77,10 @@ def _write(
     write_mp4(counted(), path, SIZE, FPS)
 
 
-def _frames(
-    chosen: Sequence[Clip], name: str, regions: RegionsByGrasp, use_camera: bool
+def closing_frames(
+    canvas: Canvas, chosen: Sequence[Clip], name: str, regions: RegionsByGrasp, use_camera: bool
 ) -> Iterator[Pixels]:
     """All frames, the canvas itself each time."""
-    canvas = Canvas(WIDTH, HEIGHT)
     for group in dict.fromkeys(clip.filmed.group for clip in chosen):
         mine = [clip for clip in chosen if clip.filmed.group == group]
         first = mine[0].filmed
@@ -90,7 +95,7 @@ def _frames(
             with ExitStack() as stack:
                 main = _drawn(hand, clip)
                 if use_camera:
-                    main = _photographed(hand, clip, window, shown, stack) or main
+                    main = _photographed(hand, clip, window, shown, stack, canvas.scale) or main
                 for frame in range(len(clip)):
                     canvas.pixels[:] = still
                     main(canvas, frame)
@@ -113,29 +118,68 @@ def _drawn(hand: HandView, clip: Clip) -> Painter:
 
 
 def _photographed(
-    hand: HandView, clip: Clip, window: View, regions: Sequence[FingerRegion], stack: ExitStack
-) -> Painter | None:
+    hand: HandView, clip: Clip, window: View, regions: Sequence[FingerRegion], stack: ExitStack,
+    scale: float,
+) -> Painter | None:  # fmt: skip
     """MuJoCo's frames; those without motion are drawn once. None if the renderer fails."""
     filmed = clip.filmed
     first, last = clip.moving
-    detail = 2e-3 * filmed.cage.outline.diameter
-    decor = Decor(
-        [(r.finger, tidied(r.geometry, detail)) for r in regions if r.level_name != "sigma_first"],
-        filmed.cage.target_placement,
+    taken = Photographs.of(
+        filmed.scene, clip.qpos[first : last + 1], window, regions, filmed.cage, stack, scale
     )
-    frames = render_frames(filmed.scene, clip.qpos[first : last + 1], window, decor)
-    stack.enter_context(closing(frames))
-    taken: list[NDArray[np.uint8]] = []
-    try:
-        taken.append(next(frames))
-    except RenderingUnavailable:
+    if taken is None:
         return None
 
     def paint(canvas: Canvas, frame: int) -> None:
-        wanted = min(max(frame - first, 0), last - first)
-        while len(taken) <= wanted:
-            taken.append(next(frames))
-        canvas.paste(taken[wanted], 0, 0)
+        canvas.paste(taken.at(min(max(frame - first, 0), last - first)), 0, 0)
+        hand.draw_goal(canvas)
         hand.draw_numbers(canvas, clip.qpos[frame])
 
     return paint
+
+
+class Photographs:
+    """Frames of MuJoCo's camera, taken one after another as they are asked for."""
+
+    def __init__(self, frames: Iterator[NDArray[np.uint8]], first: NDArray[np.uint8]) -> None:
+        self._frames, self._number, self._last = frames, 0, first
+
+    @classmethod
+    def of(
+        cls, scene: Scene, qpos: FloatArray, window: View, regions: Sequence[FingerRegion],
+        cage: Cage, stack: ExitStack, scale: float,
+    ) -> Photographs | None:  # fmt: skip
+        """Of positions (F, 6) through a window of units of ``scale`` pixels, with the regions on
+        the floor; None if the renderer fails. The target is drawn over them: in the scene its line
+        would throw a shadow.
+        """
+        detail = 2e-3 * cage.outline.diameter
+        decor = Decor(
+            [(r.finger, tidied(r.geometry, detail)) for r in regions
+             if r.level_name != "sigma_first"]
+        )  # fmt: skip
+        sized = replace(
+            window, width=round(scale * window.width), height=round(scale * window.height)
+        )
+        frames = render_frames(scene, qpos, sized, decor)
+        stack.enter_context(closing(frames))
+        try:
+            return cls(frames, next(frames))
+        except RenderingUnavailable:
+            return None
+
+    def at(self, number: int) -> NDArray[np.uint8]:
+        """Frame ``number``, never before the last that was asked for.
+
+        Raises
+        ------
+        LibraryError:
+            The camera has ended half way: killed, or its driver gave up.
+        """
+        while self._number < number:
+            try:
+                self._last = next(self._frames)
+            except RenderingUnavailable as error:
+                raise LibraryError(f"MuJoCo's camera has ended before its film: {error}") from error
+            self._number += 1
+        return self._last

@@ -10,8 +10,9 @@ import functools
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Generator
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from typing import Final
 
@@ -36,7 +37,7 @@ _KNOWN: Final = (
 """Values of ``MUJOCO_GL`` that mean something to the engine, on whatever system."""
 
 _PROBE_SECONDS: Final = 60.0
-_WORKER: Final = Path(__file__).with_name("camera_process.py")
+_WORKER: Final = Path(__file__).with_name("process.py")
 _PROBE_MODEL: Final = """<mujoco><worldbody><camera name="top" pos="0 0 1"/>
 <geom name="ball" size="0.1"/></worldbody></mujoco>"""
 
@@ -105,27 +106,37 @@ def _draw(
     model: object, qpos: FloatArray, width: int, height: int, backend: str
 ) -> Generator[NDArray[np.uint8]]:
     size = width * height * 3
-    with tempfile.TemporaryDirectory(prefix="icage-frames-") as folder:
-        model_file, positions_file = Path(folder, "model.mjb"), Path(folder, "positions.npy")
-        mj.mj_saveModel(model, str(model_file))
-        np.save(positions_file, np.asarray(qpos, dtype=np.float64))
-        command = [sys.executable, "-P", str(_WORKER), str(model_file), str(positions_file)]
-        worker = subprocess.Popen(
-            [*command, str(width), str(height)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            cwd=folder,
-            env={**os.environ, GRAPHICS: backend},
-        )
-        try:
-            assert worker.stdout is not None
-            for number in range(len(qpos)):
-                raw = worker.stdout.read(size)
-                if len(raw) < size:
-                    raise RenderingUnavailable(f"{backend} stopped at frame {number}")
-                yield np.frombuffer(raw, dtype=np.uint8).reshape(height, width, 3)
-        finally:
-            worker.kill()
-            worker.wait(timeout=_PROBE_SECONDS)
-            if worker.stdout is not None:
-                worker.stdout.close()
+    worker = subprocess.Popen(
+        [sys.executable, "-P", str(_WORKER), str(width), str(height)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, GRAPHICS: backend},
+    )
+    assert worker.stdin is not None
+    assert worker.stdout is not None
+    try:
+        with suppress(BrokenPipeError):  # it has ended already: there is no frame to read, either
+            worker.stdin.write(_packed(model, qpos))
+            worker.stdin.close()
+        for number in range(len(qpos)):
+            raw = worker.stdout.read(size)
+            if len(raw) < size:
+                raise RenderingUnavailable(f"{backend} stopped at frame {number}")
+            yield np.frombuffer(raw, dtype=np.uint8).reshape(height, width, 3)
+    finally:
+        worker.kill()
+        worker.wait(timeout=_PROBE_SECONDS)
+        worker.stdout.close()
+        with suppress(BrokenPipeError):
+            worker.stdin.close()
+
+
+def _packed(model: object, qpos: FloatArray) -> bytes:
+    """The compiled model and the positions, as the process takes them."""
+    binary = np.empty(mj.mj_sizeModel(model), dtype=np.uint8)
+    mj.mj_saveModel(model, None, binary)
+    packed = BytesIO()
+    np.save(packed, binary)
+    np.save(packed, np.asarray(qpos, dtype=np.float64))
+    return packed.getvalue()

@@ -5,6 +5,7 @@ Only looks are added; nothing here can change the motion.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -110,7 +111,7 @@ def dressed(scene: Scene, view: View, decor: Decor) -> MjSpec:
         _add_region(spec, body, scene, number, finger, geometry)
     if decor.target is not None:
         _add_target(spec, scene, decor.target)
-    _light(spec)
+    _light(spec, view)
     _add_floor(spec)
     camera = spec.worldbody.add_camera(name=CAMERA, pos=[*view.centre, 2.0])
     camera.proj = mj.mjtProjection.mjPROJ_ORTHOGRAPHIC
@@ -186,7 +187,7 @@ def _add_flat(
     looks_only(geom)
 
 
-def _light(spec: MjSpec) -> None:
+def _light(spec: MjSpec, view: View) -> None:
     """A slanted directional light with a shadow; the default headlight over-exposes."""
     spec.worldbody.add_light(
         name="sun",
@@ -205,7 +206,9 @@ def _light(spec: MjSpec) -> None:
     visual.quality.offsamples = 4
     visual.map.znear = 0.01
     visual.map.zfar = 10.0
-    visual.map.shadowclip = 1.2
+    wide = view.extent * view.width / view.height
+    reach = math.hypot(*view.centre) + 0.5 * math.hypot(view.extent, wide)
+    visual.map.shadowclip = max(1.2, 1.15 * reach + 0.3)  # beyond it the floor is speckled
     spec.stat.extent = 1.0
     spec.stat.center = [0.0, 0.0, 0.0]
 

@@ -1,4 +1,5 @@
-"""A small fast canvas: matplotlib's Agg rasterizer without a figure. One unit is one pixel, y down.
+"""A small fast canvas: matplotlib's Agg rasterizer without a figure. One unit is one pixel, y down;
+or ``scale`` pixels, so that one layout makes pictures of any size.
 
 Antialiased paths with transparency at a few hundred microseconds each, so that a video frame is
 drawn in milliseconds, with nothing but what the package depends on anyway.
@@ -35,11 +36,11 @@ class Pen:
 
 
 class Canvas:
-    """Width x height pixels, white at first."""
+    """Width x height units of ``scale`` pixels, white at first."""
 
-    def __init__(self, width: int, height: int) -> None:
-        self.width, self.height = width, height
-        self._agg = RendererAgg(width, height, 72.0)
+    def __init__(self, width: int, height: int, scale: float = 1.0) -> None:
+        self.width, self.height, self.scale = width, height, scale
+        self._agg = RendererAgg(round(width * scale), round(height * scale), 72.0 * scale)
         self._clip: Bbox | None = None
         self.pixels[:] = 255
 
@@ -54,7 +55,8 @@ class Canvas:
             self._clip = None
         else:
             left, top, right, bottom = box
-            self._clip = Bbox([[left, self.height - bottom], [right, self.height - top]])
+            corners = [[left, self.height - bottom], [right, self.height - top]]
+            self._clip = Bbox([[self.scale * x, self.scale * y] for x, y in corners])
 
     def path(
         self,
@@ -79,7 +81,7 @@ class Canvas:
             gc.set_dashes(0.0, None if pen.dash is None else list(pen.dash))
         upwards = (to_pixels or Affine2D()) + Affine2D().scale(1.0, -1.0).translate(
             0.0, self.height
-        )
+        ).scale(self.scale)
         face = None if fill is None else (*fill, alpha)
         self._agg.draw_path(gc, path, upwards, face)
         gc.restore()
@@ -129,20 +131,19 @@ class Canvas:
         anchor: str = "left",
         math: bool = False,
     ) -> float:
-        """A line of text on the baseline y, its ``anchor`` (left, middle, right) at x.
-
-        Returns its width, [pixel].
-        """
+        """A line of text on the baseline y, ``anchor`` (left, middle, right) at x; its width."""
         font = FontProperties(family="DejaVu Sans", size=size, weight="bold" if bold else "normal")
         wide, _, _ = self._agg.get_text_width_height_descent(text, font, math)
+        wide /= self.scale
         left = x - {"left": 0.0, "middle": 0.5, "right": 1.0}[anchor] * wide
         gc = self._agg.new_gc()
         gc.set_foreground(colour)
-        self._agg.draw_text(gc, left, y, text, font, 0.0, ismath=math)
+        self._agg.draw_text(gc, self.scale * left, self.scale * y, text, font, 0.0, ismath=math)
         gc.restore()
         return float(wide)
 
     def paste(self, picture: NDArray[np.uint8], left: int, top: int) -> None:
-        """Copy a picture (h, w, 3 or 4) to a place that holds it."""
+        """Copy a picture (h, w, 3 or 4), in pixels, to a place that holds it."""
         high, wide, channels = picture.shape
+        left, top = round(self.scale * left), round(self.scale * top)
         self.pixels[top : top + high, left : left + wide, :channels] = picture

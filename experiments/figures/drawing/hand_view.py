@@ -20,8 +20,8 @@ from experiments.figures.drawing.palette import (
     INK,
     OBJECT_EDGE,
     OBJECT_FILL,
+    ORANGE,
     PAPER,
-    QUIET_INK,
     RULE,
 )
 from experiments.figures.drawing.shapes import as_path, is_blank, tidied
@@ -45,6 +45,7 @@ class HandView:
         self, scene: Scene, view: View, regions: Sequence[FingerRegion], target: Placement
     ) -> None:
         self._scene, self._view = scene, view
+        self._box = (0.0, 0.0, float(view.width), float(view.height))
         self.radius = max(
             scene.finger_radius / scene.object.diameter * view.height / view.extent, 3.0
         )
@@ -60,13 +61,14 @@ class HandView:
 
     def draw(self, canvas: Canvas, qpos: FloatArray, start: FloatArray) -> None:
         """One moment of a closing that began at ``start``; both (6,)."""
-        canvas.clip((0.0, 0.0, self._view.width, self._view.height))
+        canvas.clip(self._box)
         self._draw_rails(canvas)
         place = self._place(qpos)
         for colour, alpha, path in self._regions:
             canvas.path(path, place, fill=colour, alpha=alpha, pen=Pen(colour, alpha=0.8))
         canvas.path(self._object, place, fill=OBJECT_FILL, pen=Pen(OBJECT_EDGE, 1.8))
-        self._draw_goal(canvas)
+        self.draw_goal(canvas)
+        canvas.clip(self._box)
         for k, centre in enumerate(self.fingers(start)):
             canvas.disc(centre, self.radius, None, FINGERS[k], 1.4, alpha=0.6)
         centres = self.fingers(qpos)
@@ -113,10 +115,12 @@ class HandView:
         canvas.disc(hub, 8.0, RULE)
         canvas.disc(hub, 3.0, PAPER)
 
-    def _draw_goal(self, canvas: Canvas) -> None:
-        """Where the object will stand in the hand: a dashed outline."""
-        pen = Pen(QUIET_INK, 1.6, (5.0, 4.0))
+    def draw_goal(self, canvas: Canvas) -> None:
+        """Where the object will stand in the hand: a dashed outline, over camera frames too."""
+        pen = Pen(ORANGE, 2.2, (7.0, 4.0))
+        canvas.clip(self._box)
         canvas.path(self._object, self._place(self._goal), pen=pen)
+        canvas.clip(None)
 
 
 def _normal_path(scene: Scene, region: FingerRegion) -> Path:

@@ -11,7 +11,14 @@ from matplotlib.transforms import Affine2D
 
 from experiments.figures.drawing.canvas import Canvas, Pen
 from experiments.figures.drawing.caption import DARK, LIGHT
-from experiments.figures.drawing.palette import FINGERS, OBJECT_EDGE, OBJECT_FILL, PAPER
+from experiments.figures.drawing.palette import (
+    FINGERS,
+    INK,
+    OBJECT_EDGE,
+    OBJECT_FILL,
+    ORANGE,
+    PAPER,
+)
 from experiments.figures.drawing.plots import Box
 from experiments.figures.drawing.shapes import as_path, is_blank, tidied
 from icage.arrays import FloatArray
@@ -86,6 +93,42 @@ class ObjectView:
         radius = max(self._zoom * self._cage.finger_radius, 3.0)
         for centre, colour in zip(self._pixels(placement[None])[0], FINGERS, strict=True):
             canvas.disc(centre, radius, colour, PAPER, 1.0)
+        canvas.clip(None)
+
+    def draw_hand(self, canvas: Canvas, placement: FloatArray, alpha: float = 1.0) -> None:
+        """The hand at a placement (4,): its polygon, its fingers and their numbers."""
+        canvas.clip(self._box)
+        centres = self._pixels(placement[None])[0]
+        canvas.line(np.vstack([centres, centres[:1]]), INK, 2.2, alpha=alpha)
+        radius = max(self._zoom * self._cage.finger_radius, 4.0)
+        size = float(np.clip(1.2 * radius, 12.0, 20.0))
+        for k, (centre, colour) in enumerate(zip(centres, FINGERS, strict=True)):
+            canvas.disc(centre, radius, colour, PAPER, 1.5, alpha=alpha)
+            fits = radius >= 9.0
+            x = centre[0] + (0.0 if fits else radius + 8.0)
+            ink = PAPER if fits else colour
+            y = centre[1] + 0.36 * size
+            canvas.text(x, y, str(k + 1), size, ink, bold=True, anchor="middle")
+        canvas.clip(None)
+
+    def draw_goal(self, canvas: Canvas, placement: FloatArray) -> None:
+        """The fingers of a placement (4,) as dashed circles: where they belong."""
+        canvas.clip(self._box)
+        radius = max(self._zoom * self._cage.finger_radius, 4.0)
+        turn = np.linspace(0.0, 2.0 * np.pi, 41)
+        circle = radius * np.column_stack([np.cos(turn), np.sin(turn)])
+        centres = self._pixels(placement[None])[0]
+        canvas.line(np.vstack([centres, centres[:1]]), ORANGE, 1.8, (7.0, 4.0))
+        for centre in centres:
+            canvas.line(centre + circle, ORANGE, 2.2, (5.0, 3.0))
+        canvas.clip(None)
+
+    def draw_marks(self, canvas: Canvas, placements: FloatArray, radius: float) -> None:
+        """A dot, [pixel], for every finger of placements (n, 4)."""
+        canvas.clip(self._box)
+        for k, colour in enumerate(FINGERS):
+            for centre in self._pixels(placements)[:, k]:
+                canvas.disc(centre, radius, colour, PAPER, 0.6)
         canvas.clip(None)
 
     def _pixels(self, placements: FloatArray) -> FloatArray:

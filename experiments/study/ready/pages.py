@@ -10,11 +10,9 @@ Pages are made from study.json. A map needs the table of all trials, which is no
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import Any, Final
 
-import pyarrow.parquet as pq
 from PIL import Image
 
 from experiments.figures.plan import figure_regions
@@ -22,8 +20,10 @@ from experiments.study.ready.__main__ import OUT
 from experiments.study.report.map import draw_map
 from experiments.study.report.results_md import results_page
 from experiments.study.run.command import command_line
-from experiments.study.run.document import study_of
-from experiments.study.run.folder import JSON, PAGE, TRIALS
+from experiments.study.run.document import fingerprint, study_of
+from experiments.study.run.finished import read_finished
+from experiments.study.run.folder import JSON, PAGE, StudyFolder
+from icage.errors import InputError
 from icage.formats.whole_files import whole_file
 
 COLOURS: Final = 128
@@ -36,11 +36,6 @@ WIDE: Final = 1000
 def page_of(document: dict[str, Any]) -> str:
     """``results.md`` of a finished study, as today's code writes it."""
     return results_page(document, command_line(document))
-
-
-def read_finished(folder: Path) -> dict[str, Any]:
-    """``study.json`` of a folder."""
-    return json.loads((folder / JSON).read_text(encoding="utf-8"))
 
 
 def write_pages(folder: Path) -> list[str]:
@@ -59,7 +54,10 @@ def draw_small_map(folder: Path, path: Path) -> None:
     """The map of a study that has its table, as a PNG of few colours."""
     document = read_finished(folder)
     cage = study_of(document).cage
-    draw_map(document, pq.read_table(folder / TRIALS), cage, figure_regions(cage), path)
+    trials = StudyFolder(folder, fingerprint(document)).finished()
+    if trials is None:
+        raise InputError(f"{str(folder)!r} has no table of its trials")
+    draw_map(document, trials, cage, figure_regions(cage), path)
     with Image.open(path) as picture:
         height = round(picture.height * WIDE / picture.width)
         small = picture.convert("RGB").resize((WIDE, height), Image.Resampling.LANCZOS)

@@ -5,30 +5,29 @@ python -m experiments.study.ready.tables [DIR]
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import pyarrow.parquet as pq
-
+from experiments.io.arrow_table import Table
 from experiments.study.ready.__main__ import OUT, ready
 from experiments.study.report.names import percent
 from experiments.study.report.results_md import table
 from experiments.study.report.summary import NEAR_ANGLE, NEAR_POSITION
+from experiments.study.run.document import fingerprint
+from experiments.study.run.finished import is_finished, read_finished
+from experiments.study.run.folder import TRIALS, StudyFolder, read_document
 
 
 def found_in(folder: Path) -> dict[str, dict[str, Any]]:
     """Name to document of every finished study of ``ready()``, in its order."""
     documents: dict[str, dict[str, Any]] = {}
     for one in ready():
-        path = folder / one.name / "study.json"
-        if path.exists():
-            document = json.loads(path.read_text(encoding="utf-8"))
-            if document["finished"]:
-                documents[one.name] = document
+        document = read_document(folder / one.name)
+        if document is not None and is_finished(document):
+            documents[one.name] = read_finished(folder / one.name)
     return documents
 
 
@@ -83,13 +82,12 @@ def nearby(folder: Path, study: str, over: str, position: float, angle: float) -
     """Closings per value of ``over`` that ended within ``position`` [diameter], ``angle`` [rad]."""
     columns: dict[str, dict[float, list[bool]]] = {}
     for one in ready():
-        path = folder / one.name
-        if one.file == study and (path / "trials.parquet").exists():
-            size = json.loads((path / "study.json").read_text(encoding="utf-8"))["diameter"]
-            names = [over, "position_error", "angle_error"]
-            trials = pq.read_table(path / "trials.parquet", columns=names).to_pydict()
+        trials = _trials(folder / one.name) if one.file == study else None
+        if trials is not None:
+            size = read_finished(folder / one.name)["diameter"]
+            names = (over, "position_error", "angle_error")
             cells = columns.setdefault(one.name.removeprefix(f"{study}-").replace("-", " "), {})
-            for value, off, turn in zip(*trials.values(), strict=True):
+            for value, off, turn in zip(*(trials[k].to_pylist() for k in names), strict=True):
                 cells.setdefault(value, []).append(off <= position * size and turn <= angle)
     values = sorted({value for cells in columns.values() for value in cells})
     lines = [
@@ -103,11 +101,11 @@ def by_two(folder: Path, study: str, rows: str, columns: str) -> Iterator[str]:
     """Closings of a study over two variables on grids: a line per value of ``rows`` and tool."""
     grids: dict[str, dict[tuple[float, float], list[bool]]] = {}
     for one in ready():
-        path = folder / one.name / "trials.parquet"
-        if one.file == study and path.exists():
-            trials = pq.read_table(path, columns=[rows, columns, "outcome"]).to_pydict()
+        trials = _trials(folder / one.name) if one.file == study else None
+        if trials is not None:
+            names = (rows, columns, "outcome")
             cells = grids.setdefault(one.name.removeprefix(f"{study}-"), {})
-            for a, b, outcome in zip(*trials.values(), strict=True):
+            for a, b, outcome in zip(*(trials[k].to_pylist() for k in names), strict=True):
                 cells.setdefault((a, b), []).append(outcome == "target")
     if not grids:
         return
@@ -121,6 +119,13 @@ def by_two(folder: Path, study: str, rows: str, columns: str) -> Iterator[str]:
         for a in sorted({a for a, _ in pairs})
     ]  # fmt: skip
     yield from table((rows, *head), lines)
+
+
+def _trials(folder: Path) -> Table | None:
+    """The table of a finished study, as the study wrote it; None if it is not there."""
+    if not (folder / TRIALS).exists():
+        return None
+    return StudyFolder(folder, fingerprint(read_finished(folder))).finished()
 
 
 def main(folder: str = str(OUT)) -> None:

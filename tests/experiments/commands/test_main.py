@@ -295,3 +295,35 @@ def test_a_full_standard_output_is_exit_2():
 def test_a_place_that_takes_no_file(arguments: tuple[str, ...], capsys: Any):
     command, *option = arguments
     assert "cannot be written" in here(capsys, command, CASE, *option).error_line()
+
+
+def test_an_interrupt_in_an_import_that_runs_text_has_its_code(tmp_path: Path) -> None:
+    """Python would end by the signal itself, with another code than is promised."""
+    (tmp_path / "started.py").write_text(
+        "import sys\nimport experiments.cli as cli\n"
+        "cli.parser = lambda: exec('raise KeyboardInterrupt')\nsys.exit(cli.main([]))\n"
+    )
+    root = Path(cli.__file__).parents[1]
+    done = subprocess.run(
+        [sys.executable, "-m", "started"], cwd=tmp_path, capture_output=True, check=False,
+        env={**os.environ, "PYTHONPATH": str(root)}, timeout=120,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (130, b"icage: error: interrupted\n")
+
+
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_that_a_library_makes_another_error_of_is_the_end(
+    sent: signal.Signals, code: int, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def importing() -> None:
+        try:
+            os.kill(os.getpid(), sent)
+            time.sleep(5.0)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+    monkeypatch.setattr(cli, "parser", importing)
+    before = signal.getsignal(signal.SIGINT)
+    result = here(capsys, "plan", CASE)
+    assert (result.code, result.err.count("our fault")) == (code, 0)
+    assert signal.getsignal(signal.SIGINT) is before

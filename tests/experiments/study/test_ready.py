@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from experiments.study.ready.__main__ import OUT, ready
-from experiments.study.ready.pages import page_of, read_finished, write_pages
+from experiments.study.ready.pages import page_of, write_pages
+from experiments.study.run.finished import read_finished
+from icage.errors import InputError
 
 DOCS = OUT.parent
 SMALL = 75_000
@@ -38,6 +40,23 @@ def test_an_old_page_is_seen_and_written_again(tmp_path: Path) -> None:
     assert write_pages(tmp_path) == [NAMES[1]]
     assert page.read_text(encoding="utf-8") == new
     assert write_pages(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [('"seed": 0', '"seed": "0"'), ('"finished": true', '"finished": false'), ("{", "["),
+     ('"name"', '"name": "twice", "name"'), ('"icage-study/1"', '"icage-replay/1"')],
+)  # fmt: skip
+def test_a_document_that_is_none_of_ours_is_no_page(was: str, now: str, tmp_path: Path) -> None:
+    text = (OUT / NAMES[0] / "study.json").read_text(encoding="utf-8")
+    folder = tmp_path / NAMES[0]
+    folder.mkdir()
+    (folder / "study.json").write_text(text.replace(was, now, 1), encoding="utf-8")
+    with pytest.raises(InputError):
+        read_finished(folder)
+    with pytest.raises(InputError):
+        write_pages(tmp_path)
+    assert sorted(p.name for p in folder.iterdir()) == ["study.json"]
 
 
 def test_pictures_that_pages_show_are_there_and_small() -> None:

@@ -158,7 +158,11 @@ def _processes(mark: str) -> list[str]:
 
 
 def commands(inputs: Path) -> Sequence[Ended]:
-    """Small ones that write in every way there is; ``inputs`` is a folder for what they read."""
+    """Small ones that write in every way there is; ``inputs`` is a folder for what they read.
+
+    The replay that a report is of is made here, by the command itself.
+    """
+    from experiments.cli import main
     from tests.experiments.small import t_case, write_case
 
     inputs.mkdir(parents=True)
@@ -167,6 +171,9 @@ def commands(inputs: Path) -> Sequence[Ended]:
         (inputs / folder).mkdir()
         for k in range(count):
             shutil.copy(case, inputs / folder / f"t{k}.json")
+    assert (
+        main(("replay", case, "--trials", "6", "--no-video", "--out", str(inputs / "replay"))) == 0
+    )
     study = ("study", "pliers", "--vary", "place_xy=normal:5mm", "--vary", "friction=0:0.1")
     study += ("--trials", "200", "--shard", "8", "--resume", "--out", "{}")
     return (
@@ -185,6 +192,15 @@ def commands(inputs: Path) -> Sequence[Ended]:
             ("regress", "--fast", "--cases", str(inputs / "cases"), "--out", "{}", "--workers", "2",
              "--json", "{}/regress.json"),
             ("trials.parquet", "replay.json"), together=True,
+        ),
+        Ended(
+            "report", ("report", str(inputs / "replay"), "--out", "{}/page.html"), ("page.html",)
+        ),
+        Ended(
+            "video",
+            ("video", case, "--scene", "closings", "--seconds", "2", "--size", "360p",
+             "--out", "{}/film.mp4", "--sheet", "{}/sheet.png", "--gif", "{}/film.gif"),
+            ("film.mp4", "sheet.png", "film.gif"),
         ),
         Ended("figures", ("figures", case, "--out", "{}"), ("search.svg", "tunnel.svg")),
     )  # fmt: skip

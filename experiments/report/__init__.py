@@ -1,0 +1,1 @@
+"""``icage report``: what a run found, as one page that stands alone."""
