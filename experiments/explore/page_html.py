@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from base64 import b64encode
+from collections.abc import Sequence
 from hashlib import sha256
 from html import escape
 from pathlib import Path
@@ -39,7 +40,12 @@ window.icage = mount(document.getElementById("icage"), data);
 
 def module_text() -> str:
     """The page's module without exports: a function ``mount(element, data)`` and what it needs."""
-    return "\n".join(_inlined(name) for name in MODULES)
+    return inlined_modules(())
+
+
+def inlined_modules(more: Sequence[str]) -> str:
+    """The page's module and more files of ``page/``, each after those that it imports."""
+    return "\n".join(_inlined(name) for name in (*MODULES, *more))
 
 
 def style_text() -> str:
@@ -60,12 +66,12 @@ def page_html(document: dict[str, Any], summary: str) -> str:
     """
     script, style = module_text() + _START, style_text()
     name = document["plan"]["name"] or "object"
-    html = _TEMPLATE.format(
-        policy=_policy(script, style),
+    html = TEMPLATE.format(
+        policy=_META.format(_policy(script, style)),
         title=escape(f"{name}: how far may the hand open?"),
         style=style,
         summary=escape(summary),
-        data=_data(document),
+        data=data_text(document),
         script=script,
     )
     if len(html) > LARGEST:
@@ -81,7 +87,7 @@ def _inlined(name: str) -> str:
     return _EXPORT.sub("", _IMPORT.sub("", text))
 
 
-def _data(document: dict[str, Any]) -> str:
+def data_text(document: dict[str, Any]) -> str:
     """JSON without a character that could end its element or begin another."""
     text = json_text(document)
     for character in "<>&\u2028\u2029":
@@ -91,21 +97,24 @@ def _data(document: dict[str, Any]) -> str:
 
 def _policy(script: str, style: str) -> str:
     return (
-        f"default-src 'none'; script-src {_fingerprint(script)}; style-src {_fingerprint(style)}; "
+        f"default-src 'none'; script-src {fingerprint(script)}; style-src {fingerprint(style)}; "
         "base-uri 'none'; form-action 'none'"
     )
 
 
-def _fingerprint(text: str) -> str:
+def fingerprint(text: str) -> str:
+    """Of a script or style, as a policy names it."""
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
 
 
-_TEMPLATE = """<!DOCTYPE html>
+_META: Final = """<meta http-equiv="Content-Security-Policy" content="{}">
+"""
+
+TEMPLATE: Final = """<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
+{policy}<meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <title>{title}</title>
 <style>{style}</style>
@@ -118,3 +127,4 @@ _TEMPLATE = """<!DOCTYPE html>
 </body>
 </html>
 """
+"""Of every page; what stands in braces is put in."""

@@ -1,0 +1,87 @@
+// Grasps that the search proposes: the best few, each with a small picture, to choose by click or
+// keys.
+
+import { html, setAll, svg } from "./svg.js";
+import { boxOf, pairs, ringsPath, viewOf, widened } from "./view.js";
+import { ratio } from "./words.js";
+
+const WIDE = 76, TALL = 60; // [px] of a picture
+
+/** { element, propose(), chosen(contacts) }; `go(grasp)` is told of the grasp that is picked. */
+export function proposalList(live, ask, radius, go) {
+  const { data } = live, id = `${live.id}-seconds`;
+  const seconds = html("input", { id, type: "number", min: 1, max: 600, step: "any", value: data.seconds });
+  const button = html("button", { type: "button", class: "main", on: { click: pressed } }, "Propose grasps");
+  const note = html("p", { class: "note", role: "status" }, "The best grasps of any hand, searched by the planner.");
+  const list = html("ol", { class: "proposals" });
+  const element = html("section", { class: "proposing" }, html("h2", {}, "Let it propose"),
+    html("p", { class: "row" }, button, html("label", { for: id }, "for at most"), seconds, " s"), note, list);
+  let begun = null, ticking = 0, found = [];
+  return { element, propose, chosen };
+
+  function pressed() {
+    if (begun === null) propose();
+    else {
+      note.textContent = "Taking what there is …";
+      ask("/api/stop", {}).catch(() => {});
+    }
+  }
+
+  /** Searches; the best comes to the page by itself where nothing is there yet (`take`). */
+  async function propose(take = false) {
+    if (begun !== null) return;
+    const most = Math.min(600, Math.max(1, seconds.valueAsNumber || data.seconds));
+    begun = performance.now();
+    button.textContent = "Take what there is";
+    tell(most);
+    ticking = setInterval(() => tell(most), 500);
+    try {
+      const answer = await ask("/api/propose", { radius: radius(), seconds: most, top: 6 });
+      if (answer.out_of_date) return;
+      show(answer);
+      if (take && found.length > 0) go(found[0]);
+    } catch (error) {
+      note.textContent = error.message;
+    } finally {
+      clearInterval(ticking);
+      begun = null;
+      button.textContent = "Propose grasps";
+    }
+  }
+
+  function tell(most) {
+    const passed = Math.floor((performance.now() - begun) / 1000);
+    note.textContent = `Searching: ${passed} of at most ${Number(most.toPrecision(3))} s …`;
+  }
+
+  function show(answer) {
+    found = answer.grasps;
+    const ended = { "out of time": "; the time was up", interrupted: "; you ended it" }[answer.ended] ?? "";
+    note.textContent = found.length === 0 ? `None of ${answer.compared} grasps compared is a cage.`
+      : `The best of ${answer.compared} grasps compared${ended}. The score is σ first / σ₀.`;
+    list.replaceChildren(...found.map((grasp, k) => html("li", {}, proposal(grasp, k))));
+  }
+
+  function proposal(grasp, k) {
+    const top = grasp.sigma_max === null ? "never opens"
+      : `σ max ${live.length(grasp.sigma_max)} ${data.unit}`;
+    return html("button", { type: "button", class: "proposal", "aria-pressed": "false",
+      "aria-label": `Grasp ${k + 1}, score ${ratio(grasp.score)}, ${top}`, on: { click: () => go(grasp) } },
+    picture(grasp.contacts), html("span", {}, html("b", {}, ratio(grasp.score)), html("small", {}, top)));
+  }
+
+  function picture(contacts) {
+    const box = widened(boxOf([...data.outline.vertices, ...contacts]), 0.04 * data.diameter);
+    const view = viewOf(box, WIDE, TALL);
+    return svg("svg", { viewBox: `0 0 ${WIDE} ${TALL}`, width: WIDE, height: TALL, "aria-hidden": true },
+      svg("path", { d: ringsPath(view, [data.outline.vertices]), class: "object" }),
+      svg("polygon", { points: pairs(view, contacts), class: "small" }),
+      ...contacts.map(view.to).map(([cx, cy], k) => svg("circle", { cx, cy, r: 2.6, class: `dot f${k + 1}` })));
+  }
+
+  function chosen(contacts) {
+    const key = JSON.stringify(contacts);
+    [...list.querySelectorAll("button")].forEach((one, k) => (
+      setAll(one, { "aria-pressed": String(JSON.stringify(found[k].contacts) === key) })));
+  }
+}
