@@ -8,6 +8,7 @@ import webbrowser
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from experiments.explore.live.answers import Answers, track_of
 from experiments.explore.live.guards import HOST
@@ -17,6 +18,10 @@ from experiments.explore.live.server import LiveServer
 from experiments.explore.live.thing import Thing
 from icage.case import Case
 from icage.errors import InputError
+
+
+FINGERS: Final = 3
+"""Of the hand of an object without a grasp, before one is proposed: as many as the search's have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +71,7 @@ def server_of(case: Case, asked: Asked) -> LiveServer:
         "outline": {"vertices": case.outline.vertices},
         "radius": case.finger_radius,
         "contacts": case.target,
+        "fingers": FINGERS,
         "track": track_of(case.outline, case.finger_radius),
         "seconds": asked.seconds,
         "save": None if asked.save is None else str(asked.save),

@@ -169,13 +169,16 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def _answered(answer: Any, body: dict[str, Any]) -> tuple[int, str]:
-    """Status and text; whatever happens is one line."""
+    """Status and text; whatever happens is one line.
+
+    That there is no answer is an answer, too: a browser would report any other status as a fault.
+    """
     try:
         return 200, answer(body)
     except OutOfDateError:
         return 200, json_text({"out_of_date": True})
     except InputError as error:
-        return 422, _error_text(str(error))
+        return 200, _error_text(str(error))
     except OverError as error:
         return 503, _error_text(str(error))
     except Exception as error:

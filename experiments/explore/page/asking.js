@@ -13,7 +13,7 @@ export function askerOf(token) {
     } catch {
       throw new Error("The server does not answer any more: start `icage explore` again.");
     }
-    if (!response.ok) throw new Error(answer.error);
+    if (!response.ok || answer.error) throw new Error(answer.error);
     return answer;
   };
 }

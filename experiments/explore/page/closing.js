@@ -32,10 +32,24 @@ export function closingSection(live, ask) {
   const again = html("button", { type: "button", on: { click: () => play() } }, "Play again");
   const player = html("p", { class: "player" }, again, slider);
   const element = html("section", { class: "closing" }, html("h2", {}, "Close it in physics"),
-    html("p", { class: "row" }, button, html("label", { for: id }, "with friction μ ="), mu), told, numbers, player, note);
-  let page = null, question = null, film = null, playing = 0, ours = false;
+    html("p", { class: "row" }, button, html("span", { class: "together" }, html("label", { for: id }, "with friction μ ="), mu)), told, numbers, player, note);
+  let page = null, question = null, film = null, playing = 0, ours = false, clear = null;
   player.hidden = told.hidden = numbers.hidden = true;
-  return { element, attach, moved };
+  return { element, attach, moved, pressing };
+
+  /**
+   * An answer about a hand of the film. A finger that presses stands a hair inside the object, which
+   * the query calls a collision: then the answer before it holds on, at the size of now.
+   */
+  function pressing(answer) {
+    if (!ours || answer.verdict !== "collision" || clear === null) {
+      if (ours) clear = answer;
+      return answer;
+    }
+    const closed = clear.sigma - answer.sigma;
+    const wider = (margin) => (margin === null ? null : margin + closed);
+    return { ...clear, sigma: answer.sigma, margin: wider(clear.margin), target_margin: wider(clear.target_margin) };
+  }
 
   function attach(to, asked) {
     stop();
@@ -75,16 +89,17 @@ export function closingSection(live, ask) {
 
   function ended(answer) {
     film = answer;
+    clear = null;
     const [verdict, say] = OUTCOMES[answer.outcome];
     told.dataset.verdict = verdict;
     setAll(sign, { "data-verdict": verdict });
     setAll(element, { "data-outcome": answer.outcome });
     sign.replaceChildren(...SIGNS[verdict].map((d) => svg("path", { d })));
-    const length = (value) => `${brief(value)} ${data.unit}`;
-    const lines = answer.end === null || answer.outcome === "escaped" ? [] : [
-      ["off the target by", `${length(answer.position_error)}, ${brief(answer.angle_error_deg)}°`]];
+    const length = (value) => `${brief(value)}\u00a0${data.unit}`;
+    const lines = answer.end === null || answer.outcome === "escaped" ? []
+      : [["off the target by", length(answer.position_error)], ["turned from it by", `${brief(answer.angle_error_deg)}°`]];
     if (answer.end !== null) {
-      lines.push(["deepest penetration", `${length(answer.penetration_max)} (at rest ${length(answer.penetration_rest)})`]);
+      lines.push(["deepest penetration", length(answer.penetration_max)], ["penetration at rest", length(answer.penetration_rest)]);
     }
     numbers.replaceChildren(...lines.map(([what, value]) => (
       html("li", {}, html("span", {}, what), html("b", {}, value)))));
@@ -129,7 +144,11 @@ export function closingSection(live, ask) {
   }
 }
 
+const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** Two digits; powers of ten for what is tiny. */
 function brief(value) {
-  const text = String(Number(value.toPrecision(2)));
-  return text.includes("e") ? `${text.replace("e", " × 10^").replace("^-", "^−")}` : text;
+  if (value === 0 || Math.abs(value) >= 1e-3) return String(Number(value.toPrecision(2)));
+  const [digits, power] = value.toExponential(1).split("e-");
+  return `${digits}\u00a0×\u00a010⁻${[...power].map((digit) => RAISED[digit]).join("")}`;
 }

@@ -3,7 +3,7 @@
 
 import { html, setAll, svg, subscripted } from "./svg.js";
 import { SIGNS } from "./verdict.js";
-import { ratio } from "./words.js";
+import { lengthWriter, ratio } from "./words.js";
 
 const SAID_AFTER = 700; // [ms] at rest before it is read out
 
@@ -64,12 +64,19 @@ export function contactCard(live, take) {
   }
 
   function levelRows(levels) {
+    const known = levels ? [levels.sigma_0, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
+    const length = lengthWriter(data.diameter, known);
     const row = (below, value, words) => html("div", {}, html("dt", {}, subscripted("σ", below)),
       html("dd", {}, value === undefined ? html("span", { class: "pending" }, "…")
         : value === null ? "never"
-          : html("span", {}, html("b", {}, `${live.length(value)} ${data.unit}`), ` = ${ratio(value / levels.sigma_0)} `,
-            html("span", { class: "symbol" }, html("i", {}, "σ"), html("sub", {}, "0")))),
+          : html("span", {}, html("b", {}, `${length(value)} ${data.unit}`), ...(below === "0" ? []
+            : [` = ${ratio(value / levels.sigma_0)} `, subscripted("σ", "0")]))),
       html("dd", { class: "note" }, words));
+    const one = levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
+    if (one) {
+      return [row("0", levels.sigma_0, "at the grasp"), row("max", levels.sigma_max,
+        "below it the object cannot leave, and closing ends in this grasp")];
+    }
     return [row("0", levels?.sigma_0, "at the grasp"),
       row("first", levels?.sigma_first, "below it closing ends in this grasp"),
       row("max", levels?.sigma_max, "below it the object cannot leave")];

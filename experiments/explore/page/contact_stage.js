@@ -42,7 +42,7 @@ export function contactStage(live, moved) {
     if (!state || element.clientWidth === 0) return; // hidden behind another tab
     const wide = Math.max(240, Math.floor(element.clientWidth));
     const outline = boxOf([...data.outline.vertices, ...state.track.ring]);
-    const box = widened(outline, 0.06 * data.diameter + state.radius);
+    const box = widened(outline, 0.15 * data.diameter + state.radius);
     if (view && view.wide === wide && view.box.join() === box.join()) return;
     const shape = (box[3] - box[1]) / (box[2] - box[0]);
     const tall = Math.round(Math.min(Math.max(wide * shape, 0.6 * wide, 280), 620, 1.1 * wide));

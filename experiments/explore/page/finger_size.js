@@ -25,7 +25,7 @@ export function fingerSize(live, ask, current, sized) {
     try {
       const answer = await ask("/api/fingers", { radius, contacts, to });
       if (answer.out_of_date) return;
-      note.textContent = answer.contacts || contacts === null ? ""
+      note.textContent = answer.contacts ? ""
         : `The same grasp is not there with these fingers (${answer.why}); the contacts were moved to the boundary.`;
       sized(answer);
     } catch (error) {

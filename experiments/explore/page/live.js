@@ -9,6 +9,7 @@ import { mount } from "./explore.js";
 import { fingerSize } from "./finger_size.js";
 import { caseKeeper } from "./keeping.js";
 import { proposalList } from "./proposals.js";
+import { queryOf } from "./query.js";
 import { foreign, html, setAll } from "./svg.js";
 import { trackOf } from "./track.js";
 import { lengthWriter } from "./words.js";
@@ -19,7 +20,7 @@ const REST = 250; // [ms] contacts have to be left alone before their regions ar
 export function mountLive(element, data) {
   const live = { data, id: "icage-live", length: lengthWriter(data.diameter, []) };
   const ask = askerOf(data.token);
-  const state = { contacts: data.contacts, radius: data.radius, track: tracked(data.track), standing: null,
+  const state = { contacts: data.contacts ?? spreadOver(data), radius: data.radius, track: tracked(data.track), standing: null,
     levels: null, document: null, fresh: false, trouble: null, verdict: "pending" };
   const counts = { moves: 0, standings: 0, levels: 0, documents: 0 };
   let dragging = false, resting = 0, shown = null, hand = null;
@@ -35,13 +36,11 @@ export function mountLive(element, data) {
 
   const stage = contactStage(live, moved);
   const card = contactCard(live, () => moved(state.standing.grasp.contacts, false));
-  const proposals = proposalList(live, ask, () => state.radius, (grasp) => moved(grasp.contacts, false));
+  const proposals = proposalList(live, ask, current, (grasp) => moved(grasp.contacts, false));
   const fingers = fingerSize(live, ask, current, (answer) => {
     Object.assign(state, { radius: answer.radius, track: tracked(answer.track), document: null });
     fingers.show(state.radius);
-    const kept = state.contacts?.map((contact) => state.track.nearest(contact).point);
-    if (answer.contacts ?? kept) moved(answer.contacts ?? kept, false);
-    else propose();
+    moved(answer.contacts ?? state.contacts.map((contact) => state.track.nearest(contact).point), false);
   });
   const keeper = caseKeeper(live, ask, () => ({ radius: state.radius, contacts: graspNow() ?? state.contacts }));
   const closing = closingSection(live, ask);
@@ -58,8 +57,8 @@ export function mountLive(element, data) {
     ...data.notes.map((note) => html("p", { class: "note" }, `Note: ${note}`))),
   tabs.element, html("footer", { class: "row" }, quit, over));
   fingers.show(state.radius);
-  if (state.contacts) moved(state.contacts, false);
-  else propose();
+  moved(state.contacts, false);
+  if (data.contacts === null) proposals.propose(() => counts.moves === 1);
   return { ...counts, counts: () => ({ ...counts }), state: () => ({ ...state }),
     placement: () => hand?.placement(), place: (at) => hand?.place(at), query: (at) => hand?.query(at),
     contacts: (contacts) => moved(contacts, false) };
@@ -71,11 +70,6 @@ export function mountLive(element, data) {
   /** The grasp whose cage is shown: the contacts, or the one next to them. */
   function graspNow() {
     return state.standing?.grasp?.contacts ?? null;
-  }
-
-  function propose() {
-    show();
-    proposals.propose(true);
   }
 
   /** Other contacts, drawn at once; what they are is asked. */
@@ -132,11 +126,10 @@ export function mountLive(element, data) {
   /** Everything on the first tab. */
   function show() {
     [state.verdict] = standingWord(state);
-    if (state.contacts) stage.show(state);
-    else stage.show({ ...state, contacts: [] });
-    card.show(state.contacts ? state : { ...state, standing: null });
+    stage.show(state);
+    card.show(state);
     proposals.chosen(state.contacts);
-    keeper.can(state.contacts !== null && !state.trouble);
+    keeper.can(!state.trouble);
     tellHand();
   }
 
@@ -154,7 +147,8 @@ export function mountLive(element, data) {
     if (state.document === null || !state.fresh || shown === state.document) return;
     shown = state.document;
     const question = { radius: state.radius, contacts: graspNow() };
-    hand = mount(handPanel, shown, { placed: () => closing.moved(), beside: [closing.element] });
+    const query = queryOf(shown), ask = (at) => closing.pressing(query(at));
+    hand = mount(handPanel, shown, { ask, placed: () => closing.moved(), beside: [closing.element] });
     handPanel.querySelector("h1").remove(); // the live page has it already
     closing.attach(hand, () => question);
   }
@@ -167,6 +161,12 @@ export function mountLive(element, data) {
       over.textContent = error.message;
     }
   }
+}
+
+/** Contacts of an object that has none yet: as far from each other along the boundary as can be. */
+function spreadOver({ track, fingers }) {
+  const { at, length } = trackOf(track);
+  return Array.from({ length: fingers }, (_, k) => at((k * length) / fingers));
 }
 
 function tracked(ring) {

@@ -5,17 +5,17 @@ import { html, setAll, svg } from "./svg.js";
 import { boxOf, pairs, ringsPath, viewOf, widened } from "./view.js";
 import { ratio } from "./words.js";
 
-const WIDE = 76, TALL = 60; // [px] of a picture
+const THUMB_WIDE = 66, THUMB_TALL = 56; // [px] of a picture
 
-/** { element, propose(), chosen(contacts) }; `go(grasp)` is told of the grasp that is picked. */
-export function proposalList(live, ask, radius, go) {
+/** { element, propose(take), chosen(contacts) }; `go(grasp)` is told of the grasp that is picked. */
+export function proposalList(live, ask, current, go) {
   const { data } = live, id = `${live.id}-seconds`;
   const seconds = html("input", { id, type: "number", min: 1, max: 600, step: "any", value: data.seconds });
   const button = html("button", { type: "button", class: "main", on: { click: pressed } }, "Propose grasps");
   const note = html("p", { class: "note", role: "status" }, "The best grasps of any hand, searched by the planner.");
   const list = html("ol", { class: "proposals" });
   const element = html("section", { class: "proposing" }, html("h2", {}, "Let it propose"),
-    html("p", { class: "row" }, button, html("label", { for: id }, "for at most"), seconds, " s"), note, list);
+    html("p", { class: "row" }, button, html("span", { class: "together" }, html("label", { for: id }, "for at most"), seconds, "s")), note, list);
   let begun = null, ticking = 0, found = [];
   return { element, propose, chosen };
 
@@ -27,8 +27,8 @@ export function proposalList(live, ask, radius, go) {
     }
   }
 
-  /** Searches; the best comes to the page by itself where nothing is there yet (`take`). */
-  async function propose(take = false) {
+  /** Searches; where `take()` says so then, the best comes to the page by itself. */
+  async function propose(take = () => false) {
     if (begun !== null) return;
     const most = Math.min(600, Math.max(1, seconds.valueAsNumber || data.seconds));
     begun = performance.now();
@@ -36,10 +36,10 @@ export function proposalList(live, ask, radius, go) {
     tell(most);
     ticking = setInterval(() => tell(most), 500);
     try {
-      const answer = await ask("/api/propose", { radius: radius(), seconds: most, top: 6 });
+      const answer = await ask("/api/propose", { radius: current().radius, seconds: most, top: 6 });
       if (answer.out_of_date) return;
       show(answer);
-      if (take && found.length > 0) go(found[0]);
+      if (found.length > 0 && take()) go(found[0]);
     } catch (error) {
       note.textContent = error.message;
     } finally {
@@ -51,7 +51,8 @@ export function proposalList(live, ask, radius, go) {
 
   function tell(most) {
     const passed = Math.floor((performance.now() - begun) / 1000);
-    note.textContent = `Searching: ${passed} of at most ${Number(most.toPrecision(3))} s …`;
+    note.textContent = passed > most ? `${passed} s: the best that were found are being planned …`
+      : `Searching: ${passed} of at most ${Number(most.toPrecision(3))} s …`;
   }
 
   function show(answer) {
@@ -60,6 +61,7 @@ export function proposalList(live, ask, radius, go) {
     note.textContent = found.length === 0 ? `None of ${answer.compared} grasps compared is a cage.`
       : `The best of ${answer.compared} grasps compared${ended}. The score is σ first / σ₀.`;
     list.replaceChildren(...found.map((grasp, k) => html("li", {}, proposal(grasp, k))));
+    chosen(current().contacts);
   }
 
   function proposal(grasp, k) {
@@ -72,16 +74,18 @@ export function proposalList(live, ask, radius, go) {
 
   function picture(contacts) {
     const box = widened(boxOf([...data.outline.vertices, ...contacts]), 0.04 * data.diameter);
-    const view = viewOf(box, WIDE, TALL);
-    return svg("svg", { viewBox: `0 0 ${WIDE} ${TALL}`, width: WIDE, height: TALL, "aria-hidden": true },
+    const view = viewOf(box, THUMB_WIDE, THUMB_TALL);
+    return svg("svg", { viewBox: `0 0 ${THUMB_WIDE} ${THUMB_TALL}`, width: THUMB_WIDE, height: THUMB_TALL, "aria-hidden": true },
       svg("path", { d: ringsPath(view, [data.outline.vertices]), class: "object" }),
-      svg("polygon", { points: pairs(view, contacts), class: "small" }),
+      svg("polygon", { points: pairs(view, contacts), class: "thumb" }),
       ...contacts.map(view.to).map(([cx, cy], k) => svg("circle", { cx, cy, r: 2.6, class: `dot f${k + 1}` })));
   }
 
   function chosen(contacts) {
-    const key = JSON.stringify(contacts);
+    // contacts that were put onto the true curve differ in their last digits
+    const same = (one) => one.length === contacts.length && one.every(([x, y], k) => (
+      Math.hypot(x - contacts[k][0], y - contacts[k][1]) < 1e-5 * data.diameter));
     [...list.querySelectorAll("button")].forEach((one, k) => (
-      setAll(one, { "aria-pressed": String(JSON.stringify(found[k].contacts) === key) })));
+      setAll(one, { "aria-pressed": String(same(found[k].contacts)) })));
   }
 }
