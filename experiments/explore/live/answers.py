@@ -16,7 +16,7 @@ from experiments.explore.live.lane import Lane
 from experiments.explore.live.thing import Thing, asked_contacts, asked_radius
 from icage.arrays import FloatArray
 from icage.checks import a_count
-from icage.contacts import check_radius
+from icage.contacts import LARGEST_RADIUS, check_radius
 from icage.errors import InputError
 from icage.formats.json_out import json_text
 from icage.formats.json_text import a_number, required
@@ -90,6 +90,11 @@ class Answers:
     def _fingers(self, body: dict[str, Any]) -> str:
         """Fingers of another radius: the way of their centres, and the same grasp if there is."""
         radius = check_radius(asked_radius(body, "to"))
+        most = LARGEST_RADIUS * self.thing.outline.diameter
+        if radius > most:
+            raise InputError(
+                f"the finger radius is {radius:g} {self.thing.unit}; up to {most:g} is allowed"
+            )
         track = track_of(self.thing.outline, radius)
         contacts, why = None, None
         if body.get("contacts") is not None:
@@ -124,6 +129,10 @@ class Answers:
         if not 0.0 <= friction <= 10.0:
             raise InputError(f"friction is {friction:g}; 0 to 10 is needed")
         question = {**_asked(body), "placement": row, "friction": friction}
+        if not question["radius"] > 0.0:
+            raise InputError(
+                "these fingers are points, and simulated fingers need a radius: give them one"
+            )
         return self._closing.ask("close", question, LATER)
 
     def _save(self, body: dict[str, Any]) -> str:

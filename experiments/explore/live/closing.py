@@ -52,10 +52,6 @@ class Closing:
         return json_text(closing_document(cage, config, closings, film))
 
     def _cage(self, question: dict[str, Any]) -> Cage:
-        if not question["radius"] > 0.0:
-            raise InputError(
-                "these fingers are points, and simulated fingers need a radius: give them one"
-            )
         key = repr((question["radius"], question["contacts"]))
         if self._planned is None or self._planned[0] != key:
             self._planned = key, plan(self.thing.case_asked(question))
