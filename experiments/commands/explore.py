@@ -94,7 +94,6 @@ def _serve(case: Any, args: argparse.Namespace) -> None:
         tolerance=args.tolerance or 0.0,
         **given,
     )
-    print("icage: the page is served at this address until Ctrl-C", file=sys.stderr, flush=True)
     serve(case, asked)
 
 

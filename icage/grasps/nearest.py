@@ -24,7 +24,7 @@ from icage.geometry.statics import contacts_reason, slide_reason
 from icage.hand import HandShape
 from icage.library_faults import geometry_told
 from icage.outline import Outline
-from icage.tolerance import TARGET_SHIFT, TARGET_TURN
+from icage.tolerance import CONTACT_OFF, TARGET_SHIFT, TARGET_TURN
 
 REACHES: Final = ((TARGET_SHIFT, TARGET_TURN), (0.02, 0.1), (0.05, 0.3), (0.1, 0.6))
 """[diameter], [rad] How far a finger may move and the hand turn to a grasp, one after another."""
@@ -45,8 +45,8 @@ class NearestGrasp:
     why:
         Why the contacts themselves are no grasp, a sentence; empty where they are one.
     contacts:
-        (3, 2) finger centres of the nearest grasp of the same hand, [unit]; None if there is none
-        within reach. The contacts themselves where they are a grasp.
+        (3, 2) finger centres of the nearest grasp of the same hand that all fingers touch, [unit];
+        None if there is none within reach. The contacts themselves where they are a grasp.
     moved:
         [unit] How far the finger is away from there that is furthest.
     turned:
@@ -82,7 +82,7 @@ class NearestGrasps:
     >>> near.why
     'no equilibrium: no pushing forces at these contacts balance'
     >>> round(near.moved, 3)
-    0.01
+    0.007
     """
 
     def __init__(self, outline: Outline, radius: float = 0.0) -> None:
@@ -151,9 +151,16 @@ class NearestGrasps:
                 grasp = grasp_on_curve(self.outline, self.radius, grasp, space.hand)
             except GraspError:
                 return ""
+        if self._off(grasp) > CONTACT_OFF * size:
+            return ""  # a grasp of some of the fingers: there is no contact for the others
         moved = float(np.hypot(*(grasp - contacts).T).max())
         a, b = ((pair[1] - pair[0]) @ [1.0, 1.0j] for pair in (contacts, grasp))
         return NearestGrasp("", grasp, moved, abs(float(np.angle(b / a))))
+
+    def _off(self, contacts: FloatArray) -> float:
+        """How far the finger is from touching that is furthest from it."""
+        far = shapely.distance(self.outline.polygon.exterior, shapely.points(contacts))
+        return float(np.abs(np.asarray(far) - self.radius).max())
 
     def _reason(self, contacts: FloatArray) -> str:
         return contacts_reason(self._polygon, self._frame.into(contacts))

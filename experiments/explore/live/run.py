@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import sys
 import threading
 import webbrowser
 from contextlib import suppress
@@ -19,9 +20,8 @@ from experiments.explore.live.thing import Thing
 from icage.case import Case
 from icage.errors import InputError
 
-
 FINGERS: Final = 3
-"""Of the hand of an object without a grasp, before one is proposed: as many as the search's have."""
+"""Of a hand that no grasp was found for yet: as many as those of the search have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +101,7 @@ def serve(case: Case, asked: Asked) -> None:
     server = server_of(case, asked)
     try:
         server.answers.warm()
+        print("icage: the page is at this address until Ctrl-C:", file=sys.stderr, flush=True)
         print(server.address, flush=True)
         if asked.browser:
             threading.Thread(target=_open, args=(server.address,), daemon=True).start()

@@ -177,10 +177,8 @@ def _answered(answer: Any, body: dict[str, Any]) -> tuple[int, str]:
         return 200, answer(body)
     except OutOfDateError:
         return 200, json_text({"out_of_date": True})
-    except InputError as error:
+    except (InputError, OverError) as error:
         return 200, _error_text(str(error))
-    except OverError as error:
-        return 503, _error_text(str(error))
     except Exception as error:
         return 500, _error_text(
             what_gave_out(error) or f"internal: {type(error).__name__} (our fault)"

@@ -35,7 +35,7 @@ export function contactStage(live, moved) {
   let view = null, state = null, drawn = null, grabbed = null;
   new ResizeObserver(laidOut).observe(element);
   for (const [name, heard] of [["pointerdown", taken], ["pointermove", dragged], ["pointerup", released],
-    ["pointercancel", released], ["lostpointercapture", released]]) drawing.addEventListener(name, heard);
+    ["pointercancel", released], ["lostpointercapture", released], ["keydown", pressed]]) drawing.addEventListener(name, heard);
   return { element, show, focus: (k) => fingers.children[k]?.focus({ preventScroll: true }) };
 
   function laidOut() {
@@ -136,7 +136,7 @@ export function contactStage(live, moved) {
     moved(state.contacts, false);
   }
 
-  drawing.addEventListener("keydown", (event) => {
+  function pressed(event) {
     const handle = event.target.closest?.("[data-contact]");
     if (!handle || event.ctrlKey || event.altKey || event.metaKey) return;
     const k = Number(handle.dataset.contact), { s } = state.track.nearest(state.contacts[k]);
@@ -149,7 +149,7 @@ export function contactStage(live, moved) {
       if (corner) place(k, corner.point, false);
     } else return;
     event.preventDefault();
-  });
+  }
 
   function cornerFrom(s, forwards) {
     const { corners, length } = state.track, least = 1e-6 * length;

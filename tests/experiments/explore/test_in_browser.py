@@ -351,6 +351,23 @@ def test_friction_has_a_slider_where_it_was_computed(opened: Opened) -> None:
     assert opened("pliers").locator(".friction").count() == 0
 
 
+def test_friction_of_discs_says_where_closings_stop(opened: Opened) -> None:
+    cage, page = cage_of("pliers"), opened("pliers", 0.0, 0.2)
+    slider = page.get_by_label("Coefficient μ")
+    slider.fill("1")
+    level = icage.friction_levels(cage, [0.2])[0]
+    assert level.sigma_first is not None
+    text = page.locator(".friction .note").inner_text()
+    assert f"Below σ = {level.sigma_first:.3f} mm" in text
+    off = f"{level.ends.position_max * cage.outline.diameter:.3f}"
+    assert f"It stops at most {off} mm and " in text
+    assert float(text.split(" mm and ")[1].split("°")[0]) == pytest.approx(
+        math.degrees(level.ends.angle_max), rel=1e-2
+    )
+    slider.fill("0")
+    assert "stops at most" not in page.locator(".friction .note").inner_text()
+
+
 @pytest.mark.parametrize("wide", [1280, 390])
 @pytest.mark.parametrize("name", ["pliers", "never_escapes_b", "rectangle_notcage"])
 def test_it_fits_wide_and_narrow_screens(name: str, wide: int, opened: Opened) -> None:
