@@ -128,7 +128,7 @@ class Answers:
         friction = a_number(body.get("friction", 0.0), "friction")
         if not 0.0 <= friction <= 10.0:
             raise InputError(f"friction is {friction:g}; 0 to 10 is needed")
-        question = {**_asked(body), "placement": row, "friction": friction}
+        question: dict[str, Any] = {**_asked(body), "placement": row, "friction": friction}
         if not question["radius"] > 0.0:
             raise InputError(
                 "these fingers are points, and simulated fingers need a radius: give them one"

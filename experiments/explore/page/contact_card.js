@@ -30,7 +30,7 @@ export function contactCard(live, take) {
   return { element, show };
 
   function show(state) {
-    const { standing, levels, trouble } = state, [verdict, name] = standingWord(state);
+    const { standing, levels, trouble, unplanned } = state, [verdict, name] = standingWord(state);
     element.dataset.verdict = verdict;
     setAll(sign, { "data-verdict": verdict });
     sign.replaceChildren(...(SIGNS[verdict] ?? []).map((d) => svg("path", { d })));
@@ -39,8 +39,10 @@ export function contactCard(live, take) {
     const grasp = !trouble && standing && !standing.holds ? standing.grasp : null;
     near.textContent = grasp ? "The nearest grasp of a hand of this shape (dashed) is "
       + `${live.length(grasp.moved)} ${data.unit} away, turned by ${Number(grasp.turned_deg.toPrecision(2))}°. Of that grasp:` : "";
-    near.hidden = button.hidden = !grasp;
-    const held = !trouble && standing && (standing.holds || grasp) && levels?.verdict !== "not_a_cage";
+    if (unplanned && !levels) near.textContent += ` ${sentence(unplanned)}`;
+    near.hidden = near.textContent === "";
+    button.hidden = !grasp;
+    const held = !trouble && !(unplanned && !levels) && standing && (standing.holds || grasp) && levels?.verdict !== "not_a_cage";
     rows.hidden = !held;
     if (held) rows.replaceChildren(...levelRows(levels));
     setAll(rows, { "aria-busy": held && !levels ? "true" : null });
@@ -68,10 +70,10 @@ export function contactCard(live, take) {
     const length = lengthWriter(data.diameter, known);
     const row = (below, value, words) => html("div", {}, html("dt", {}, subscripted("σ", below)),
       html("dd", {}, value === undefined ? html("span", { class: "pending" }, "…")
-        : value === null ? "never"
+        : value === null ? "there is none"
           : html("span", {}, html("b", {}, `${length(value)} ${data.unit}`), ...(below === "0" ? []
             : [` = ${ratio(value / levels.sigma_0)} `, subscripted("σ", "0")]))),
-      html("dd", { class: "note" }, words));
+      html("dd", { class: "note" }, value === null ? words.replace("below it", "at any size") : words));
     const one = levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
     if (one) {
       return [row("0", levels.sigma_0, "at the grasp"), row("max", levels.sigma_max,

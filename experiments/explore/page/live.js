@@ -21,7 +21,7 @@ export function mountLive(element, data) {
   const live = { data, id: "icage-live", length: lengthWriter(data.diameter, []) };
   const ask = askerOf(data.token);
   const state = { contacts: data.contacts ?? spreadOver(data), radius: data.radius, track: tracked(data.track), standing: null,
-    levels: null, document: null, fresh: false, trouble: null, verdict: "pending" };
+    levels: null, document: null, fresh: false, trouble: null, unplanned: null, verdict: "pending" };
   const counts = { moves: 0, standings: 0, levels: 0, documents: 0 };
   let dragging = false, resting = 0, shown = null, hand = null;
 
@@ -75,8 +75,7 @@ export function mountLive(element, data) {
   /** Other contacts, drawn at once; what they are is asked. */
   function moved(contacts, held) {
     dragging = held;
-    state.contacts = contacts;
-    state.fresh = false;
+    Object.assign(state, { contacts, fresh: false, unplanned: null });
     counts.moves += 1;
     show();
     standings.put(current());
@@ -118,8 +117,9 @@ export function mountLive(element, data) {
     return question.radius === state.radius && JSON.stringify(question.contacts) === JSON.stringify(graspNow());
   }
 
-  function unplanned(error) {
-    state.trouble = error.message;
+  /** The contacts are what they are, but their cage could not be planned or is too large to show. */
+  function unplanned(error, question) {
+    if (isNow(question)) state.unplanned = error.message;
     show();
   }
 
@@ -137,7 +137,7 @@ export function mountLive(element, data) {
     const there = state.document !== null && state.fresh;
     handPanel.hidden = !there;
     planned.hidden = there;
-    planned.textContent = state.trouble ?? (state.standing && graspNow() === null
+    planned.textContent = state.trouble ?? state.unplanned ?? (state.standing && graspNow() === null
       ? "These contacts are no grasp and none is near: choose others." : "The cage of the contacts is being planned …");
   }
 
