@@ -21,38 +21,44 @@ export function askerOf(token) {
 const AGAIN = 300; // [ms] until a question is asked again that another page's has displaced
 
 /**
- * Questions that come faster than answers: one is under way, of those that wait only the newest is
- * asked. `told(answer, question)` and `failed(error, question)` hear of each that was; both are
- * not called for answers that came after `forget()`.
+ * Questions that come faster than answers: `most` are under way, of those that wait only the newest
+ * is asked. `told(answer, question)` and `failed(error, question)` hear of each in the order of the
+ * questions; of answers that came after `forget()`, or after that to a newer question, nobody does.
  */
-export function newestOf(ask, told, failed) {
-  let busy = false, next = null, turn = 0;
+export function newestOf(ask, told, failed, most = 1) {
+  let busy = 0, next = null, asked = 0, heard = 0;
   const put = async (question) => {
-    if (busy) {
+    if (busy >= most) {
       next = question;
       return;
     }
-    busy = true;
-    const mine = turn;
+    busy += 1;
+    const mine = ++asked;
     let hear;
     try {
       const answer = await ask(question);
       if (answer.out_of_date) {
         await new Promise((done) => { setTimeout(done, AGAIN); });
-        next ??= mine === turn ? question : null;
-        hear = () => {};
+        if (mine === asked) next ??= question;
       } else hear = () => told(answer, question);
     } catch (error) {
       hear = () => failed(error, question);
     }
-    busy = false;
-    if (mine === turn) hear();
-    if (next !== null && !busy) {
+    busy -= 1;
+    if (mine > heard && hear) {
+      heard = mine;
+      hear();
+    }
+    if (next !== null && busy < most) {
       const later = next;
       next = null;
       put(later);
     }
   };
-  const forget = () => { turn += 1; next = null; };
+  const forget = () => {
+    asked += 1;
+    heard = asked;
+    next = null;
+  };
   return { put, forget };
 }

@@ -30,7 +30,7 @@ export function mountLive(element, data) {
     levels.forget();
     documents.forget();
     show();
-  });
+  }, 2);
   const levels = newestOf((question) => ask("/api/levels", question), leveled, unplanned);
   const documents = newestOf((question) => ask("/api/document", question), documented, unplanned);
 
