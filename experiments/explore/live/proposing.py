@@ -30,8 +30,8 @@ class Proposing:
         if kind == "warm":
             return "{}"
 
-        def look(_stage: str, _done: int, _total: int, _best: float | None) -> None:
-            if stopped():
+        def look(_stage: str, _done: int, _total: int, best: float | None) -> None:
+            if best is not None and stopped():
                 raise KeyboardInterrupt  # the search takes it as "with what there is"
 
         long_job()

@@ -19,9 +19,10 @@ from experiments.explore.live.server import LiveServer
 from experiments.explore.live.thing import Thing
 from icage.case import Case
 from icage.errors import InputError
+from icage.hand import HandShape
 
-FINGERS: Final = 3
-"""Of a hand that no grasp was found for yet: as many as those of the search have."""
+ANY_HAND: Final = HandShape.from_angles_deg(60.0, 120.0)
+"""Of an object without a grasp, before one is proposed: it says how many fingers there are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ def server_of(case: Case, asked: Asked) -> LiveServer:
         "outline": {"vertices": case.outline.vertices},
         "radius": case.finger_radius,
         "contacts": case.target,
-        "fingers": FINGERS,
+        "fingers": len(ANY_HAND.z),
         "track": track_of(case.outline, case.finger_radius),
         "seconds": asked.seconds,
         "save": None if asked.save is None else str(asked.save),

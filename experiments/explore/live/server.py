@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -19,6 +20,12 @@ from icage.formats.json_text import an_object, parse_json
 
 IDLE: Final = 60.0
 """[s] A connection on which nothing comes is closed, and one whose question stops in the midst."""
+
+LINGER: Final = 0.5
+"""[s] How long what is left of a refused request is waited for."""
+
+MOST_UNREAD: Final = 1 << 23
+"""[byte] ... and how much of it is read."""
 
 MOST_CONNECTIONS: Final = 32
 """At a time: a browser opens six."""
@@ -134,8 +141,18 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _refuse(self, error: Exception) -> None:
         status, why = (error.status, error.why) if isinstance(error, Refusal) else (400, str(error))
-        self.close_connection = True  # what is left of the request is not read
+        self.close_connection = True
         self._send_json(status, _error_text(why))
+        self._linger()
+
+    def _linger(self) -> None:
+        """Read some of what is still sent: a connection that is cut loses the answer, too."""
+        with suppress(OSError):
+            self.connection.shutdown(socket.SHUT_WR)
+            self.connection.settimeout(LINGER)
+            left = MOST_UNREAD
+            while left > 0 and (part := self.connection.recv(1 << 16)):
+                left -= len(part)
 
     def _send_json(self, status: int, text: str) -> None:
         self._send(status, text.encode("utf-8"), "application/json; charset=utf-8")
@@ -163,6 +180,7 @@ class _Handler(BaseHTTPRequestHandler):
         if not hasattr(self, "headers"):
             self.command = self.command or "GET"
         self._send_json(code, _error_text(message or "the request is no use"))
+        self._linger()
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: the address with its token is nobody's business."""

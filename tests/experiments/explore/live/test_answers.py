@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -173,6 +175,18 @@ def test_a_search_proposes_cages_best_first() -> None:
             ({"radius": 4.5, "seconds": 1}, "diameter"),
         ):
             assert why in refusal(server, "/api/propose", question)
+
+
+@pytest.mark.slow
+def test_a_search_that_is_stopped_gives_what_it_has() -> None:
+    with served(CASE) as server, ThreadPoolExecutor(1) as thread:
+        question = {"radius": 6, "seconds": 120, "top": 2}
+        waiting = thread.submit(ask, server, "/api/propose", question)
+        time.sleep(2.0)
+        assert ask(server, "/api/stop", {}) == {}
+        found = waiting.result(100.0)
+        assert found["ended"] == "interrupted"
+        assert 1 <= len(found["grasps"]) <= 2
 
 
 def test_the_case_that_is_saved_is_the_case(tmp_path: Path) -> None:

@@ -84,6 +84,11 @@ def test_what_is_too_long_is_refused_before_it_is_read(pliers: LiveServer) -> No
         assert str(LARGEST_BODY) in why
 
 
+def test_who_sends_a_million_bytes_hears_why_not(pliers: LiveServer) -> None:
+    refused(request(pliers, "POST", ASK, b"x" * 1_000_000), 413)
+    refused(request(pliers, "POST", ASK, b"x" * 1_000_000, X_Icage_Token="no"), 403)
+
+
 @pytest.mark.parametrize("length", ["-1", "1e3", "", "²", "0x10"])
 def test_a_length_that_is_none_is_refused(length: str, pliers: LiveServer) -> None:
     refused(request(pliers, "POST", ASK, b"{}", Content_Length=length), 411)
