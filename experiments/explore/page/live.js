@@ -38,8 +38,10 @@ export function mountLive(element, data) {
   const card = contactCard(live, () => moved(state.standing.grasp.contacts, false));
   const proposals = proposalList(live, ask, current, (grasp) => moved(grasp.contacts, false));
   const fingers = fingerSize(live, ask, current, (answer) => {
-    Object.assign(state, { radius: answer.radius, track: tracked(answer.track), document: null });
+    Object.assign(state, { radius: answer.radius, track: tracked(answer.track), standing: null,
+      levels: null, document: null });
     fingers.show(state.radius);
+    if (proposals.any()) proposals.clear();
     moved(answer.contacts ?? state.contacts.map((contact) => state.track.nearest(contact).point), false);
   });
   const keeper = caseKeeper(live, ask, () => ({ radius: state.radius, contacts: graspNow() ?? state.contacts }));

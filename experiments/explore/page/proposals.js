@@ -7,7 +7,7 @@ import { ratio } from "./words.js";
 
 const THUMB_WIDE = 66, THUMB_TALL = 56; // [px] of a picture
 
-/** { element, propose(take), chosen(contacts) }; `go(grasp)` is told of the grasp that is picked. */
+/** { element, propose(take), chosen(contacts), clear(), any() }; `go(grasp)` is told of the grasp that is picked. */
 export function proposalList(live, ask, current, go) {
   const { data } = live, id = `${live.id}-seconds`;
   const seconds = html("input", { id, type: "number", min: 1, max: 600, step: "any", value: data.seconds });
@@ -17,7 +17,7 @@ export function proposalList(live, ask, current, go) {
   const element = html("section", { class: "proposing" }, html("h2", {}, "Let it propose"),
     html("p", { class: "row" }, button, html("span", { class: "together" }, html("label", { for: id }, "for at most"), seconds, "s")), note, list);
   let begun = null, ticking = 0, found = [];
-  return { element, propose, chosen };
+  return { element, propose, chosen, clear, any: () => found.length > 0 };
 
   function pressed() {
     if (begun === null) propose();
@@ -31,13 +31,18 @@ export function proposalList(live, ask, current, go) {
   async function propose(take = () => false) {
     if (begun !== null) return;
     const most = Math.min(600, Math.max(1, seconds.valueAsNumber || data.seconds));
+    const { radius } = current();
     begun = performance.now();
     button.textContent = "Take what there is";
     tell(most);
     ticking = setInterval(() => tell(most), 500);
     try {
-      const answer = await ask("/api/propose", { radius: current().radius, seconds: most, top: 6 });
+      const answer = await ask("/api/propose", { radius, seconds: most, top: 6 });
       if (answer.out_of_date) return;
+      if (radius !== current().radius) {
+        clear();
+        return;
+      }
       show(answer);
       if (found.length > 0 && take()) go(found[0]);
     } catch (error) {
@@ -47,6 +52,13 @@ export function proposalList(live, ask, current, go) {
       begun = null;
       button.textContent = "Propose grasps";
     }
+  }
+
+  /** What was proposed is for fingers of another radius. */
+  function clear() {
+    found = [];
+    list.replaceChildren();
+    note.textContent = "Grasps of other fingers were proposed: propose again.";
   }
 
   function tell(most) {

@@ -245,6 +245,12 @@ def test_grasps_are_proposed_for_an_object_without_one(
     until(page, "icage.state().standing.holds && icage.state().levels?.verdict === 'cage'")
     scores = [float(text) for text in page.locator(".proposal b").all_inner_texts()]
     assert scores == sorted(scores, reverse=True)
+    page.get_by_label("Radius [mm]").fill("0")
+    page.get_by_label("Radius [mm]").press("Tab")
+    page.get_by_text("propose again").wait_for()  # those were grasps of other fingers
+    assert page.locator(".proposal").count() == 0
+    until(page, "icage.state().radius === 0 && icage.state().standing?.holds")
+    until(page, "icage.state().levels?.verdict === 'cage'")
 
 
 def test_the_case_is_downloaded(visited: Visited, pliers: LiveServer, tmp_path: Path) -> None:
