@@ -23,8 +23,8 @@ from icage.formats.json_text import a_number, required
 from icage.geometry.near_frame import NearFrame
 from icage.outline import Outline
 
-SOON: Final = 10.0
-"""[s] For what is milliseconds."""
+SOON: Final = 60.0
+"""[s] For what is milliseconds, and a second for the largest outlines."""
 
 LATER: Final = 300.0
 """[s] For a plan of the largest outlines."""
@@ -71,10 +71,10 @@ class Answers:
             "/api/save": self._save,
         }
 
-    def warm(self) -> None:
-        """Start what will be asked first."""
-        self._standing.warm()
-        self._planning.warm()
+    def warm(self, radius: float) -> None:
+        """Start what will be asked first, for fingers of this radius."""
+        self._standing.warm({"radius": radius})
+        self._planning.warm({})
 
     def end(self) -> None:
         """End all processes."""

@@ -114,13 +114,13 @@ class Lane:
             raise job.error
         return job.text
 
-    def warm(self) -> None:
-        """Start the process before it is asked anything."""
-        threading.Thread(target=self._warm, daemon=True).start()
+    def warm(self, question: dict[str, Any]) -> None:
+        """Start the process before it is asked anything else."""
+        threading.Thread(target=self._warm, args=(question,), daemon=True).start()
 
-    def _warm(self) -> None:
-        with suppress(OutOfDateError, InputError, OverError, RuntimeError):
-            self.ask("warm", {}, 60.0)
+    def _warm(self, question: dict[str, Any]) -> None:
+        with suppress(OutOfDateError, InputError, OverError):
+            self.ask("warm", question, 60.0)
 
     def stop(self) -> None:
         """Who is at work shall answer with what there is."""

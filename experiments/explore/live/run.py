@@ -101,7 +101,7 @@ def serve(case: Case, asked: Asked) -> None:
     """
     server = server_of(case, asked)
     try:
-        server.answers.warm()
+        server.answers.warm(case.finger_radius)
         print("icage: the page is at this address until Ctrl-C:", file=sys.stderr, flush=True)
         print(server.address, flush=True)
         if asked.browser:

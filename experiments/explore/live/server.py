@@ -195,8 +195,10 @@ def _answered(answer: Any, body: dict[str, Any]) -> tuple[int, str]:
         return 200, answer(body)
     except OutOfDateError:
         return 200, json_text({"out_of_date": True})
-    except (InputError, OverError) as error:
+    except InputError as error:
         return 200, _error_text(str(error))
+    except OverError as error:
+        return 200, json_text({"error": str(error), "over": True})
     except Exception as error:
         return 500, _error_text(
             what_gave_out(error) or f"internal: {type(error).__name__} (our fault)"

@@ -11,11 +11,17 @@ export function askerOf(token) {
       });
       answer = await response.json();
     } catch {
-      throw new Error("The server does not answer any more: start `icage explore` again.");
+      throw lost("The server does not answer any more: start `icage explore` again.");
     }
+    if (answer.over) throw lost(answer.error);
     if (!response.ok || answer.error) throw new Error(answer.error);
     return answer;
   };
+}
+
+/** An error that says nothing of what was asked. */
+function lost(words) {
+  return Object.assign(new Error(words), { lost: true });
 }
 
 const AGAIN = 300; // [ms] until a question is asked again that another page's has displaced

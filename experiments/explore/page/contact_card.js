@@ -8,7 +8,8 @@ import { lengthWriter, ratio } from "./words.js";
 const SAID_AFTER = 700; // [ms] at rest before it is read out
 
 /** What a state is called: [verdict for the colour and the sign, word]. */
-export function standingWord({ standing, levels, trouble }) {
+export function standingWord({ standing, levels, trouble, lost }) {
+  if (trouble && lost) return ["pending", "no answer"];
   if (trouble) return ["collision", "no hand"];
   if (!standing) return ["pending", "looking"];
   if (standing.holds && levels?.verdict === "not_a_cage") return ["escapes", "no cage"];

@@ -26,7 +26,7 @@ export function mountLive(element, data) {
   let dragging = false, resting = 0, shown = null, hand = null;
 
   const standings = newestOf((question) => ask("/api/standing", question), stood, (error) => {
-    Object.assign(state, { standing: null, levels: null, trouble: error.message });
+    Object.assign(state, { standing: null, levels: null, trouble: error.message, lost: error.lost });
     levels.forget();
     documents.forget();
     show();

@@ -324,3 +324,17 @@ def test_the_server_ends_when_the_page_says_so(visited: Visited) -> None:
         page = visited(server)
         page.get_by_role("button", name="End the server").click()
         page.get_by_text("The server has ended").wait_for()
+
+
+def test_a_server_that_is_gone_is_said(visited: Visited) -> None:
+    with served(load("pliers")) as server:
+        page = visited(server)
+        settled(page)
+        page.route("**/api/**", lambda route: route.fulfill(status=200, body="no JSON"))
+        page.locator("[data-contact='0']").focus()
+        page.keyboard.press("ArrowRight")
+        page.get_by_text("does not answer any more").first.wait_for()
+        assert standing(page) == "no answer"
+        page.unroute("**/api/**")
+        page.keyboard.press("ArrowLeft")
+        until(page, "icage.state().standing?.holds")
