@@ -38,7 +38,12 @@ window.icage = mount(document.getElementById("icage"), data);
 
 def module_text() -> str:
     """The page's module without exports: a function ``mount(element, data)`` and what it needs."""
-    return "\n".join(_inlined(name) for name in MODULES)
+    return inlined_modules(())
+
+
+def inlined_modules(more: Sequence[str]) -> str:
+    """The page's module and more files of ``page/``, each after those that it imports."""
+    return "\n".join(_inlined(name) for name in (*MODULES, *more))
 
 
 def style_text() -> str:
@@ -59,12 +64,12 @@ def page_html(document: dict[str, Any], summary: str) -> str:
     """
     script, style = module_text() + _START, style_text()
     name = document["plan"]["name"] or "object"
-    html = _TEMPLATE.format(
-        policy=page_policy(script, style),
+    html = TEMPLATE.format(
+        policy=_META.format(page_policy(script, style)),
         title=escape(f"{name}: how far may the hand open?"),
         style=style,
         summary=escape(summary),
-        data=_data(document),
+        data=data_text(document),
         script=script,
     )
     if len(html) > LARGEST:
@@ -80,7 +85,7 @@ def _inlined(name: str) -> str:
     return _EXPORT.sub("", _IMPORT.sub("", text))
 
 
-def _data(document: dict[str, Any]) -> str:
+def data_text(document: dict[str, Any]) -> str:
     """JSON without a character that could end its element or begin another."""
     text = json_text(document)
     for character in "<>&\u2028\u2029":
@@ -88,12 +93,14 @@ def _data(document: dict[str, Any]) -> str:
     return text
 
 
-_TEMPLATE = """<!DOCTYPE html>
+_META: Final = """<meta http-equiv="Content-Security-Policy" content="{}">
+"""
+
+TEMPLATE: Final = """<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
+{policy}<meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <title>{title}</title>
 <style>{style}</style>
@@ -106,3 +113,4 @@ _TEMPLATE = """<!DOCTYPE html>
 </body>
 </html>
 """
+"""Of every page; what stands in braces is put in."""

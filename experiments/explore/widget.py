@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import re
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -16,10 +17,30 @@ from icage.errors import InputError
 from icage.formats.json_out import json_text
 from icage.friction.levels import JamTolerance, friction_levels
 
-_RENDER: Final = """
+RENDER: Final = """
+/** "light" or "dark" as JupyterLab, VS Code or marimo say it; null where nobody does. */
+const themeOf = () => {
+  const root = document.documentElement, { body } = document;
+  const { jpThemeLight, vscodeThemeKind } = body.dataset;
+  if (jpThemeLight) return jpThemeLight === "false" ? "dark" : "light";
+  if (vscodeThemeKind) return vscodeThemeKind.includes("light") ? "light" : "dark";
+  const says = (one) => [root, body].some(({ classList, dataset }) => (
+    classList.contains(one) || dataset.theme === one));
+  return ["dark", "light"].find(says) ?? null;
+};
+
 export default {
   render({ model, el }) {
     el.classList.add("icage");
+    const themed = () => {
+      const theme = themeOf();
+      for (const one of ["dark", "light"]) el.classList.toggle(`icage-${one}`, one === theme);
+    };
+    themed();
+    const watching = new MutationObserver(themed);
+    for (const one of [document.documentElement, document.body]) {
+      watching.observe(one, { attributes: true });
+    }
     let told = null;
     const placed = ({ x, y, theta, sigma }) => {
       told = [x, y, theta, sigma];
@@ -31,9 +52,23 @@ export default {
       const [x, y, theta, sigma] = model.get("placement");
       if (told?.join() !== [x, y, theta, sigma].join()) page.place({ x, y, theta, sigma });
     });
+    return () => watching.disconnect();
   },
 };
 """
+
+_DARK: Final = re.compile(r"@media \(prefers-color-scheme: dark\) \{\n  \.icage \{([^}]*)\}\n\}")
+"""The colours of the page where the system is dark."""
+
+
+def themed_style() -> str:
+    """The page's style, whose colours follow the notebook's theme and else the system's."""
+    return _DARK.sub(
+        r"@media (prefers-color-scheme: dark) { .icage:not(.icage-light) {\1} }\n"
+        r".icage.icage-light { color-scheme: light; }\n"
+        r".icage.icage-dark { color-scheme: dark;\1}",
+        style_text(),
+    )
 
 
 def explore_widget(cage: Cage, mus: Sequence[float] = ()) -> Any:
@@ -69,8 +104,8 @@ def explore_widget(cage: Cage, mus: Sequence[float] = ()) -> Any:
         "ExploreWidget",
         (anywidget.AnyWidget,),
         {
-            "_esm": module_text() + _RENDER,
-            "_css": style_text(),
+            "_esm": module_text() + RENDER,
+            "_css": themed_style(),
             "document": traitlets.Dict().tag(sync=True),
             "placement": traitlets.List(traitlets.Float()).tag(sync=True),
         },

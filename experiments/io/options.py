@@ -68,6 +68,11 @@ def row_index(text: str) -> int:
     return _whole(text, 0, 10_000_000)
 
 
+def port_number(text: str) -> int:
+    """A port that a user may listen on, 0 for any."""
+    return _whole(text, 0, 65535)
+
+
 def _whole(text: str, low: int, high: int) -> int:
     if not (text.isascii() and text.isdigit() and len(text) <= 20 and low <= int(text) <= high):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")

@@ -50,7 +50,7 @@ def in_processes(
     """
     spawn = get_context("spawn")  # a fork would take locks along that nobody opens
     watched, held = spawn.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(workers, spawn, _begin, (watched, os.getpid()))
+    pool = ProcessPoolExecutor(workers, spawn, begin_worker, (watched, os.getpid()))
     try:
         yield from in_pool(pool, work, pieces, workers + 1, held.close)
     except BrokenProcessPool as error:
@@ -64,8 +64,11 @@ def in_processes(
         watched.close()
 
 
-def _begin(watched: Connection, parent: int) -> None:
-    """In a new process: its output leads nowhere, and it ends with the one that started it."""
+def begin_worker(watched: Connection, parent: int) -> None:
+    """In a new process: its output leads nowhere, and it ends with the one that started it.
+
+    The thread that started it must live as long (Linux kills it with that thread).
+    """
     keep_warnings()
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)

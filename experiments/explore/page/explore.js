@@ -19,9 +19,9 @@ import { lengthWriter } from "./words.js";
  * { query(at), placement(), place(at) } with placements { x, y, theta, sigma }.
  *
  * `ask(at)` answers about a placement; without it the tables of the document do. `placed(at, answer)`
- * is told wherever the hand is put.
+ * is told wherever the hand is put; `beside` are elements that stand below the answer.
  */
-export function mount(element, data, { ask = queryOf(data), placed = () => {} } = {}) {
+export function mount(element, data, { ask = queryOf(data), placed = () => {}, beside = [] } = {}) {
   const page = pageOf(data), { plan } = page, unit = plan.hand.unit_fingers;
   const target = page.places[0];
   let at = standAt(target), chosen = target;
@@ -40,7 +40,7 @@ export function mount(element, data, { ask = queryOf(data), placed = () => {} } 
       html("div", { class: "left" }, stage.element, legend(page), hints(page)),
       html("div", { class: "right" },
         html("div", { class: "answer" }, card.element, scale.element),
-        numbers.element, table.element, route.element, friction.element)));
+        ...beside, numbers.element, table.element, route.element, friction.element)));
   goTo(target);
   return { query: ask, placement: () => ({ ...at }), place: taken };
 

@@ -20,6 +20,10 @@ export function frictionSlider(page, changed, go) {
   told();
   return { element, current: () => levels[slider.valueAsNumber] };
 
+  function endsWords({ position_max: off, angle_max_deg: turned }) {
+    return ` It stops at most ${length(off * plan.diameter)} ${plan.unit} and ${Number(turned.toPrecision(3))}° off.`;
+  }
+
   function told() {
     const level = levels[slider.valueAsNumber], near = plan.tolerance;
     value.textContent = String(level.mu);
@@ -28,7 +32,7 @@ export function frictionSlider(page, changed, go) {
       : `Below σ = ${length(level.sigma_first)} ${plan.unit}`;
     const within = `${near.position} diameters and ${Number(near.angle_deg.toPrecision(3))}°`;
     words.textContent = `${below}, closing ends within ${within} of the target with friction up to `
-      + `this.${level.jam ? ` There fingers ${listed(level.jam.fingers)} can jam.` : ""}`;
+      + `this.${level.mu > 0 ? endsWords(level.ends) : ""}${level.jam ? ` There fingers ${listed(level.jam.fingers)} can jam.` : ""}`;
     jam.hidden = level.jam === null;
   }
 }

@@ -87,12 +87,13 @@ function viewChoice(boxes, chosen) {
   }
 }
 
-function outlinePath(plan, view) {
+/** The object as it is drawn. */
+export function outlinePath(plan, view) {
   return svg("path", { d: ringsPath(view, [plan.outline.vertices]), class: "object" });
 }
 
 /** The regions, the lower level on top. */
-function regionPaths({ plan, document: data }, view) {
+export function regionPaths({ plan, document: data }, view) {
   // where sigma_first and sigma_max are one, the region is that of the guarantee
   const whole = plan.sigma_max !== null && plan.sigma_first === plan.sigma_max ? "sure" : "whole";
   const sorted = ["sigma_max", "all", "sigma_first"].flatMap((level) => (
@@ -102,7 +103,8 @@ function regionPaths({ plan, document: data }, view) {
   }));
 }
 
-function scaleBar(view, unit) {
+/** A round length and its name, in the lower right corner. */
+export function scaleBar(view, unit) {
   const long = roundLength((0.22 * view.wide) / view.zoom), px = long * view.zoom;
   const x = view.wide - 14 - px, y = view.tall - 14;
   return [

@@ -6,7 +6,8 @@ import { MEANINGS, NO_CAGE, collisionWords, listed } from "./words.js";
 
 const QUIET_AFTER = 500; // [ms] at rest before it is read out
 
-const SIGNS = {
+/** The sign of each verdict, on 24 by 24. */
+export const SIGNS = {
   target: ["M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z", "M12 9a3 3 0 1 0 0 6a3 3 0 1 0 0-6z"],
   caged: ["M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z"],
   other: ["M4 4h16v16h-16z", "M9 12h6"],

@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 import icage
+from experiments.explore.document import explore_document
+from experiments.explore.page_html import module_text
+from experiments.explore.widget import RENDER, themed_style
 from icage.cage import Cage
 from icage.case import Case
 from icage.cells.membership import query
+from icage.cells.query_tables import query_tables
+from icage.formats.json_out import json_text
 from icage.formats.query_json import query_document
 from icage.hand import Placement
 from icage.outline import Outline
@@ -351,6 +356,23 @@ def test_friction_has_a_slider_where_it_was_computed(opened: Opened) -> None:
     assert opened("pliers").locator(".friction").count() == 0
 
 
+def test_friction_of_discs_says_where_closings_stop(opened: Opened) -> None:
+    cage, page = cage_of("pliers"), opened("pliers", 0.0, 0.2)
+    slider = page.get_by_label("Coefficient μ")
+    slider.fill("1")
+    level = icage.friction_levels(cage, [0.2])[0]
+    assert level.sigma_first is not None
+    text = page.locator(".friction .note").inner_text()
+    assert f"Below σ = {level.sigma_first:.3f} mm" in text
+    off = f"{level.ends.position_max * cage.outline.diameter:.3f}"
+    assert f"It stops at most {off} mm and " in text
+    assert float(text.split(" mm and ")[1].split("°")[0]) == pytest.approx(
+        math.degrees(level.ends.angle_max), rel=1e-2
+    )
+    slider.fill("0")
+    assert "stops at most" not in page.locator(".friction .note").inner_text()
+
+
 @pytest.mark.parametrize("wide", [1280, 390])
 @pytest.mark.parametrize("name", ["pliers", "never_escapes_b", "rectangle_notcage"])
 def test_it_fits_wide_and_narrow_screens(name: str, wide: int, opened: Opened) -> None:
@@ -466,3 +488,37 @@ def test_without_scripts_the_answer_is_there(opened: Opened, browser: Any, page_
     page.goto(page_file("pliers").as_uri())
     assert "sigma_max 96.865" in page.locator("noscript").inner_text()
     context.close()
+
+
+THEMES = """theme => { document.body.dataset.jpThemeLight = theme;
+  const shown = () => getComputedStyle(document.querySelector('.icage')).backgroundColor;
+  return new Promise(done => setTimeout(() => done(shown()), 50)); }"""
+
+
+def test_the_widget_follows_the_theme_of_the_notebook(browser: Any) -> None:
+    """As a notebook does it: its theme may be another than the system's, and may change."""
+    cage = cage_of("cross_multi")
+    document = explore_document(cage, query_tables(cage), "cross", "m")
+    page = browser.new_page(color_scheme="dark")
+    page.set_content(f"<style>{themed_style()}</style><body><div></div></body>")
+    script = module_text() + RENDER.replace("export default", "window.widget =")
+    page.add_script_tag(content=f"{script}\nwindow.given = {json_text(document)};", type="module")
+    page.evaluate(
+        """() => { const kept = { document: given }, heard = {};
+             const model = { get: key => kept[key], set: (key, value) => { kept[key] = value; },
+               save_changes() {}, on: (event, listener) => { heard[event] = listener; } };
+             window.kept = kept;
+             window.undo = widget.render({ model, el: document.querySelector('div') }); }"""
+    )
+    page.wait_for_selector(".hand .grip[points]")
+    assert page.evaluate("kept.placement.length") == 4
+    dark, light = "rgb(20, 24, 28)", "rgb(255, 255, 255)"
+    assert (
+        page.evaluate("getComputedStyle(document.querySelector('.icage')).backgroundColor") == dark
+    )
+    assert page.evaluate(THEMES, "true") == light
+    assert page.evaluate(THEMES, "false") == dark
+    page.emulate_media(color_scheme="light")
+    assert page.evaluate(THEMES, "false") == dark
+    page.evaluate("undo()")
+    page.close()

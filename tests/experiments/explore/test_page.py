@@ -19,7 +19,8 @@ import icage
 from experiments.explore import page_html as html_of
 from experiments.explore.document import explore_document
 from experiments.explore.encoded import doubles, indices
-from experiments.explore.page_html import MODULES, PAGE, module_text, page_html
+from experiments.explore.live.page import LIVE_MODULES
+from experiments.explore.page_html import MODULES, PAGE, inlined_modules, page_html
 from experiments.io.one_line import one_line
 from icage.cells.query_tables import query_tables
 from icage.errors import InputError
@@ -28,6 +29,7 @@ from tests.experiments.commands.runner import here
 from tests.experiments.explore.placements import SIX, cage_of
 
 HOSTILE = "</script><!--<script>alert(1)</script>\u202e\"'&amp;<b>\u2028"
+SVG = "http://www.w3.org/2000/svg"
 T = str(CASES / "T_best.json")
 
 
@@ -145,25 +147,31 @@ def test_the_policy_lets_in_this_script_and_style_and_nothing_else():
 
 def test_nothing_in_the_page_names_another_place():
     addresses = set(re.findall(r"(?:https?:)?//[\w.]+\.\w+[\w/.]*", page_of("cross_multi")))
-    assert addresses == {"http://www.w3.org/2000/svg"}
+    assert addresses == {SVG}
     for file in PAGE.iterdir():
         text = file.read_text(encoding="utf-8")
-        assert not re.search(r"\bfetch\(|XMLHttp|WebSocket|innerHTML|eval\(|url\(", text), file
+        assert not re.search(
+            r"XMLHttp|WebSocket|innerHTML|eval\(|url\(|https?:", text.replace(SVG, "")
+        )
+        assert ("fetch(" in text) == (file.name == "asking.js")  # the live page asks its server
+    assert "asking.js" not in MODULES
 
 
-def test_the_files_of_the_module_are_one_scope():
-    text = module_text()
+@pytest.mark.parametrize("more", [(), LIVE_MODULES])
+def test_the_files_of_the_module_are_one_scope(more: tuple[str, ...]):
+    text = inlined_modules(more)
     assert not re.search(r"^(import|export)\b", text, re.MULTILINE)
     tops = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", text, re.MULTILINE)
     assert len(tops) == len(set(tops)) > 40
-    assert {file.name for file in PAGE.glob("*.js")} == set(MODULES)
+    assert {file.name for file in PAGE.glob("*.js")} == {*MODULES, *LIVE_MODULES}
 
 
 def test_every_file_comes_after_those_that_it_imports():
-    for place, name in enumerate(MODULES):
+    modules = (*MODULES, *LIVE_MODULES)
+    for place, name in enumerate(modules):
         text = (PAGE / name).read_text(encoding="utf-8")
         for names, other in re.findall(r'^import \{ (.*) \} from "\./(.*)";$', text, re.MULTILINE):
-            assert other in MODULES[:place], (name, other)
+            assert other in modules[:place], (name, other)
             exported = (PAGE / other).read_text(encoding="utf-8")
             for word in names.split(", "):
                 assert re.search(rf"^export (const|function) {word}\b", exported, re.MULTILINE)
@@ -187,7 +195,6 @@ def test_the_command_writes_the_page(tmp_path: Path, capsys: Any):
 
 
 def test_the_command_says_what_it_needs(tmp_path: Path, capsys: Any):
-    assert "--out FILE.html" in here(capsys, "explore", T).error_line()
     wrong = here(capsys, "explore", T, "--out", str(tmp_path / "a.svg")).error_line()
     assert "ending in .html" in wrong
     out = str(tmp_path / "none" / "a.html")

@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-from experiments.explore.widget import explore_widget
+from experiments.explore.page_html import style_text
+from experiments.explore.widget import explore_widget, themed_style
 from icage.errors import InputError
 from tests.experiments.explore.placements import cage_of
 
@@ -25,3 +26,11 @@ def test_the_widget_starts_at_the_target_and_carries_the_page():
     assert widget.document["plan"]["sigma_max"] == cage.sigma_max
     assert [level["mu"] for level in widget.document["plan"]["friction"]] == [0.1, 0.3]
     assert set(widget.trait_names(sync=True)) >= {"document", "placement"}
+
+
+def test_the_widget_has_dark_colours_for_a_dark_notebook_and_a_dark_system():
+    style, plain = themed_style(), style_text()
+    (dark,) = [line for line in plain.splitlines() if line.strip().startswith("--paper: #14181c")]
+    assert (plain.count(dark.strip()), style.count(dark.strip())) == (1, 2)
+    assert ".icage.icage-dark { color-scheme: dark;" in style
+    assert ".icage:not(.icage-light) {" in style
