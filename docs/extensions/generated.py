@@ -1,0 +1,57 @@
+"""Parts of pages that are made when the site is: help texts and docstrings cannot go stale there.
+
+On a forge such a place is a comment in the page's source, ``<!-- site: commands -->``, beside which
+the page says how to see the same without the site.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+from collections.abc import Callable
+
+from sphinx.application import Sphinx
+
+MARK = re.compile(r"^<!-- site: (.+) -->$", re.MULTILINE)
+
+
+def commands() -> str:
+    """``icage COMMAND --help`` of every command, under a heading each."""
+    from experiments.cli import parser
+
+    os.environ["COLUMNS"] = "88"
+    (action,) = (a for a in parser()._actions if isinstance(a, argparse._SubParsersAction))
+    parts: list[str] = []
+    for name, command in sorted(action.choices.items()):
+        parts += [f"## icage {name}", "", "```text", command.format_help().rstrip(), "```", ""]
+    return "\n".join(parts)
+
+
+def members(names: str) -> str:
+    """The docstrings of these names, ``module name name ...``."""
+    module, *found = names.split()
+    parts = ["```{eval-rst}", f".. py:currentmodule:: {module}", ""]
+    for name in found:
+        kind = "autoclass" if name[0].isupper() else "autofunction"
+        kind = "autoexception" if name.endswith("Error") else kind
+        parts += [f".. {kind}:: {module}.{name}", ""]
+    return "\n".join([*parts, "```"])
+
+
+def made(found: re.Match[str]) -> str:
+    kind, _, rest = found[1].partition(" ")
+    makers: dict[str, Callable[[], str]] = {
+        "commands": commands,
+        "members": lambda: members(rest),
+    }
+    return makers[kind]()
+
+
+def fill(app: Sphinx, page: str, text: list[str]) -> None:
+    text[0] = MARK.sub(made, text[0])
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    app.connect("source-read", fill)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
