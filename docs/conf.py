@@ -60,6 +60,21 @@ html_theme_options = {
 # The reference of the Python names, from their docstrings.
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 autodoc_typehints = "signature"
-autodoc_class_signature = "separated"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+autodoc_type_aliases = {
+    name: name for name in ("FloatArray", "IntArray", "BoolArray", "ArrayLike", "MethodName")
+}
+python_use_unqualified_type_names = True
+python_display_short_literal_types = True
+python_maximum_signature_line_length = 80
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+
+# Every reference must lead somewhere, but for the types in signatures that are another library's, whose
+# pages would have to be fetched, or are no public name of ours.
+nitpick_ignore_regex = [
+    ("py:.*", r"(numpy|np|shapely|pathlib|os|collections|typing|ndarray|dtype|float64)\b.*"),
+    ("py:class", r"[A-Z]\w+|'[\w ]+'"),
+    ("py:class", r"(icage|sim)\.[a-z_]+\..*"),
+]

@@ -52,6 +52,28 @@ def fill(app: Sphinx, page: str, text: list[str]) -> None:
     text[0] = MARK.sub(made, text[0])
 
 
+ITEM = re.compile(r"\w[\w, *]*:$")
+
+
+def plain_docstring(
+    app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]
+) -> None:
+    """Tell napoleon what our docstrings mean, before it reads them.
+
+    Items of a section stand as ``name:``, which numpydoc writes without the colon; and a sentence with
+    a colon under an attribute is a sentence, no type: an empty comment before it says so.
+    """
+    inside = False
+    for k, line in enumerate(lines):
+        underlined = k + 1 < len(lines) and re.fullmatch(r"-{3,}", lines[k + 1])
+        inside = bool(underlined) or inside
+        if inside and ITEM.fullmatch(line):
+            lines[k] = line[:-1]
+    if what in ("attribute", "data", "property") and not inside:
+        lines[:0] = ["..", ""]
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("source-read", fill)
+    app.connect("autodoc-process-docstring", plain_docstring, priority=100)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

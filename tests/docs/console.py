@@ -28,7 +28,7 @@ NEAR = 2e-4
 """A number as shown, relative: few digits are shown of most."""
 TINY = 1e-3
 """Errors of physics (3.7e-07) and the like say that they are small, and no more."""
-PROGRESS = re.compile(r"^icage: (?!warning|error).* \d+ of [\d,]+(, best so far.*)?\n", re.MULTILINE)
+PROGRESS = re.compile(r"^icage: .*: [\d,]+ of [\d,]+(, .*)?\n", re.MULTILINE)
 
 
 @contextlib.contextmanager
