@@ -73,7 +73,16 @@ def plain_docstring(
         lines[:0] = ["..", ""]
 
 
+def plain_signature(
+    app: Sphinx, what: str, name: str, value: object, options: object, takes: str, gives: str | None
+) -> tuple[str, str | None]:
+    """Names of array types as they are written, without what Sphinx wraps them in."""
+    wrapped = re.compile(r"TypeAliasForwardRef\('(\w+)'\)")
+    return wrapped.sub(r"\1", takes or ""), gives and wrapped.sub(r"\1", gives)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("source-read", fill)
     app.connect("autodoc-process-docstring", plain_docstring, priority=100)
+    app.connect("autodoc-process-signature", plain_signature)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -46,7 +46,9 @@ def fault(words: list[str]) -> str | None:
 
 @pytest.mark.parametrize("page", sorted({page for page, _ in SHOWN}), ids=name)
 def test_commands_of_a_page_exist(page: Path):
-    faults = [f"{' '.join(words)}: {fault(words)}" for p, words in SHOWN if p == page and fault(words)]
+    faults = [
+        f"{' '.join(words)}: {fault(words)}" for p, words in SHOWN if p == page and fault(words)
+    ]
     assert not faults, "\n".join(faults)
 
 

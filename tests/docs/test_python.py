@@ -14,10 +14,7 @@ from experiments.environment import ROOT
 from tests.docs.blocks import blocks, name, with_blocks
 
 PAGES = with_blocks("python")
-NOT_HERE = {
-    "docs/cluster.md": "needs a Slurm cluster and dask-jobqueue",
-    "docs/decisions/0008-rooms.md": "sketches a layout and calls nothing",
-}
+NOT_HERE = {"docs/cluster.md": "needs a Slurm cluster and dask-jobqueue"}
 """Pages whose code is compiled only, and why."""
 NEEDS = {"docs/explore.md": "anywidget"}
 FLAGS = doctest.IGNORE_EXCEPTION_DETAIL | doctest.NORMALIZE_WHITESPACE
