@@ -18,6 +18,7 @@ from experiments.environment import ROOT, environment
 
 
 def main() -> int:
+    """Make the site, and say where its first page is."""
     parser = argparse.ArgumentParser(prog="python3 -m docs", description="make the site")
     parser.add_argument("--here", action="store_true", help="use this Python's environment")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "docs", help="folder")

@@ -71,8 +71,8 @@ python_maximum_signature_line_length = 80
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
-# Every reference must lead somewhere, but for the types in signatures that are another library's, whose
-# pages would have to be fetched, or are no public name of ours.
+# Every reference must lead somewhere, but for the types in signatures that are another library's,
+# whose pages would have to be fetched, or are no public name of ours.
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np|shapely|pathlib|os|collections|typing|ndarray|dtype|float64)\b.*"),
     ("py:class", r"[A-Z]\w+|'[\w ]+'"),

@@ -1,8 +1,8 @@
 """The pictures of these pages, made again by the code: ``python -m docs.pictures [NAME ...]``.
 
-Most are what a command draws; ``COMMANDS`` has it, word for word. The four of the theory that no command
-draws are drawn here, with the product's own shapes and colours. All go into ``docs/figures``, and are
-the same bytes every time.
+Most are what a command draws; ``COMMANDS`` has it, word for word. The four of the theory that no
+command draws are drawn here, with the product's own shapes and colours. All go into
+``docs/figures``, and are the same bytes every time.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def theory_levels(figure: Figure) -> None:
 
 
 def theory_discs(figure: Figure) -> None:
-    """The curve of the finger centres between the two polygons that enclose it, coarse on purpose."""
+    """The curve of the finger centres between two polygons that enclose it, coarse on purpose."""
     outline = Outline(np.array([[0, 0], [3, 0], [3, 1], [1.2, 1], [1.2, 2.6], [0, 2.6]], float))
     radius, segments = 0.6, 2
     true = outline.polygon.buffer(radius, quad_segs=256)

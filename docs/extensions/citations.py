@@ -84,6 +84,7 @@ def anchor_references(app: Sphinx, page: str, text: list[str]) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
+    """Called by Sphinx."""
     app.connect("source-read", anchor_references)
     app.connect("doctree-resolved", link_citations)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -40,6 +40,7 @@ def members(names: str) -> str:
 
 
 def made(found: re.Match[str]) -> str:
+    """What stands in the place of one comment."""
     kind, _, rest = found[1].partition(" ")
     makers: dict[str, Callable[[], str]] = {
         "commands": commands,
@@ -49,6 +50,7 @@ def made(found: re.Match[str]) -> str:
 
 
 def fill(app: Sphinx, page: str, text: list[str]) -> None:
+    """Put what is made into a page, before it is read."""
     text[0] = MARK.sub(made, text[0])
 
 
@@ -60,8 +62,8 @@ def plain_docstring(
 ) -> None:
     """Tell napoleon what our docstrings mean, before it reads them.
 
-    Items of a section stand as ``name:``, which numpydoc writes without the colon; and a sentence with
-    a colon under an attribute is a sentence, no type: an empty comment before it says so.
+    Items of a section stand as ``name:``, which numpydoc writes without the colon; and a sentence
+    with a colon under an attribute is a sentence, no type: an empty comment before it says so.
     """
     inside = False
     for k, line in enumerate(lines):
@@ -82,6 +84,7 @@ def plain_signature(
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
+    """Called by Sphinx."""
     app.connect("source-read", fill)
     app.connect("autodoc-process-docstring", plain_docstring, priority=100)
     app.connect("autodoc-process-signature", plain_signature)

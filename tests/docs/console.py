@@ -1,7 +1,7 @@
 """Run what a page shows after ``$`` and compare what is printed with what is shown.
 
-``icage`` runs in this process, which has the planner loaded already; anything else in a shell. What a
-command prints, on either stream, must be what the page shows, but that numbers may differ in
+``icage`` runs in this process, which has the planner loaded already; anything else in a shell.
+What a command prints, on either stream, must be what the page shows, but that numbers may differ in
 their fifth digit (libraries differ in the last ones) and that a line ``...`` stands for any lines.
 
     python -m tests.docs.console docs/tutorial.md     runs a page and writes what is printed into it

@@ -1,7 +1,7 @@
 """Every command that a page shows exists, with the options that it is given there.
 
-Consoles are run besides (test_console.py). What is indented takes minutes or other machines, or is run
-by tests of its own; here its options are read by the program's own parser, and modules are found.
+Consoles are run besides (test_console.py). What is indented takes minutes or other machines, or is
+run by tests of its own; here its options are read by the program's own parser, modules are found.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ WRITTEN = [page for page in pages() if page.is_relative_to(DOCS) and "studies" n
 
 @pytest.mark.parametrize("page", [p for p in WRITTEN if p.name != "index.md"], ids=name)
 def test_the_index_lists_the_page(page: Path):
-    """A page that the index lacks is found by nobody: give it a line there that says what it is for."""
+    """Nobody finds a page that the index lacks: give it a line there, what it is for."""
     index = (DOCS / "index.md").read_text(encoding="utf-8")
     assert f"]({page.relative_to(DOCS).as_posix()})" in index
 

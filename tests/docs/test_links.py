@@ -32,9 +32,8 @@ def broken(page: Path, text: str) -> list[str]:
             continue
         path, _, anchor = link.partition("#")
         target = (page.parent / path).resolve() if path else page
-        if not target.is_file() or not target.is_relative_to(ROOT):
-            found.append(link)
-        elif anchor and anchor not in anchors(target):
+        there = target.is_file() and target.is_relative_to(ROOT)
+        if not there or (anchor and anchor not in anchors(target)):
             found.append(link)
     return found
 

@@ -13,7 +13,8 @@ import pytest
 from experiments.environment import ROOT
 from tests.docs.blocks import blocks, name, with_blocks
 
-PAGES = with_blocks("python")
+PAGES = [page for page in with_blocks("python") if name(page) != "README.md"]
+"""The README's is run in tests/experiments/commands/test_docs.py, where its output is looked at."""
 NOT_HERE = {"docs/cluster.md": "needs a Slurm cluster and dask-jobqueue"}
 """Pages whose code is compiled only, and why."""
 NEEDS = {"docs/explore.md": "anywidget"}

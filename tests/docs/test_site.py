@@ -1,4 +1,4 @@
-"""The site is built with warnings as errors, where Sphinx is installed, and asks no host for anything."""
+"""Where Sphinx is installed, the site is built, warnings as errors; it fetches nothing."""
 
 from __future__ import annotations
 
