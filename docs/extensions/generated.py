@@ -11,7 +11,11 @@ import os
 import re
 from collections.abc import Callable
 
+from docutils import nodes
+from sphinx import addnodes
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util.nodes import make_refnode
 
 MARK = re.compile(r"^<!-- site: (.+) -->$", re.MULTILINE)
 
@@ -76,11 +80,34 @@ def plain_docstring(
 
 
 def plain_signature(
-    app: Sphinx, what: str, name: str, value: object, options: object, takes: str, gives: str | None
-) -> tuple[str, str | None]:
+    app: Sphinx,
+    what: str,
+    name: str,
+    value: object,
+    options: object,
+    takes: str | None,
+    gives: str | None,
+) -> tuple[str, str | None] | None:
     """Names of array types as they are written, without what Sphinx wraps them in."""
+    if takes is None:
+        return None
     wrapped = re.compile(r"TypeAliasForwardRef\('(\w+)'\)")
-    return wrapped.sub(r"\1", takes or ""), gives and wrapped.sub(r"\1", gives)
+    return wrapped.sub(r"\1", takes), gives and wrapped.sub(r"\1", gives)
+
+
+def link_of_error(
+    app: Sphinx, env: BuildEnvironment, wanted: addnodes.pending_xref, text: nodes.TextElement
+) -> nodes.reference | None:
+    """Docstrings name an error without its module."""
+    name = wanted["reftarget"]
+    if wanted.get("reftype") != "exc" or "." in name:
+        return None
+    for module in ("icage.errors", "icage.sampling"):
+        found = env.domains.python_domain.objects.get(f"{module}.{name}")
+        if found is not None:
+            page, anchor = found.docname, found.node_id
+            return make_refnode(app.builder, wanted["refdoc"], page, anchor, text, name)
+    return None
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -88,4 +115,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("source-read", fill)
     app.connect("autodoc-process-docstring", plain_docstring, priority=100)
     app.connect("autodoc-process-signature", plain_signature)
+    app.connect("missing-reference", link_of_error)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
