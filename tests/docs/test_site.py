@@ -44,7 +44,7 @@ def test_help_texts_docstrings_and_citations_are_on_the_site(site: Path):
     commands = (site / "docs/commands.html").read_text(encoding="utf-8")
     assert "--friction-figure FILE" in commands
     api = (site / "docs/api.html").read_text(encoding="utf-8")
-    assert 'id="icage.Cage.sigma_max"' in api
+    assert 'id="icage.Cage.escape_path"' in api
     assert 'id="sim.replay"' in api
     theory = (site / "docs/theory.html").read_text(encoding="utf-8")
     assert re.search(r'href="references.html#bunis2018"', theory)
