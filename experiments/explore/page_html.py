@@ -7,6 +7,7 @@ their imports are dropped, and every name at their top is theirs alone.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import Any, Final

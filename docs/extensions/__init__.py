@@ -1,0 +1,1 @@
+"""What the site adds to Sphinx, none of which is needed to read the pages on a forge."""
