@@ -123,13 +123,13 @@ def roomiest(cage: Cage, seed: int) -> FloatArray:
 def _drawn(
     cage: Cage, which: StartSet, count: int, rng: np.random.Generator, box: Box | None = None
 ) -> FloatArray:
-    """Placements (count, 4) of a set of the cage; a set that cannot be drawn from is the input's."""
+    """Placements (count, 4) of a set; that it is empty or too small is no fault of ours."""
     try:
         return draw_starts(cage, which, count, rng, box=box).placements
     except SamplingError as error:
         raise ConfigError(
-            f"starts: {error}; a nominal placement of your own (nominal = [x, y, theta, sigma]), or "
-            "another grasp, is needed"
+            f"starts: {error}; a nominal placement of your own (nominal = [x, y, theta, sigma]) or "
+            "another grasp is needed"
         ) from error
 
 
