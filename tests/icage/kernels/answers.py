@@ -23,6 +23,7 @@ from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
 from icage.sampling import draw_starts
+from tests.oracles.geometry import Floats
 from tests.oracles.polygons import FAMILIES
 from tests.oracles.targets import random_target
 
@@ -34,15 +35,31 @@ OBJECTS: Final = {
 }
 """Random polygons with a grasp, for points and for discs: family, seed, radius [diameter]."""
 
+SIZES: Final = {1: 1.0, 2: 40.0, 5: 0.2}
+"""By seed, times what the oracles draw: a length that is left out is not hidden by being one."""
+
+SEARCHED: Final = {
+    "triangle": [[0, 0], [1, 0], [0.4, 0.8]],
+    "notched": [[0, 0], [4, 0], [4, 2], [2, 1], [0, 2]],
+}
+"""Outlines whose best grasps are searched."""
+
 HANDS: Final = 40
 
 
 @cache
 def cage_of(name: str) -> Cage:
     """The plan of one of the objects."""
+    return plan(*_target(name))
+
+
+def _target(name: str) -> tuple[Floats, Floats, float]:
+    """Vertices, contacts and radius of one of the objects, somewhere in the plane."""
     family, seed, radius = OBJECTS[name]
+    size = SIZES[seed]
     target = random_target(np.random.default_rng(seed), family, radius)
-    return plan(target.vertices, target.contacts, target.radius)
+    away = size * np.array([3.0, -0.7])
+    return size * target.vertices + away, size * target.contacts + away, size * target.radius
 
 
 def _plan(name: str) -> Any:
@@ -55,6 +72,14 @@ def _by_the_paper(name: str) -> Any:
     cage = cage_of(name)
     other = plan(cage.outline, cage.contacts, cage.finger_radius, method="contact-space")
     return [other.status, other.sigma_first, other.sigma_max, other.grasps, other.punctures]
+
+
+def _moved(name: str) -> Any:
+    """Contacts that are off by nearly as much as is allowed."""
+    vertices, contacts, radius = _target(name)
+    off = 3e-7 * cage_of(name).outline.diameter
+    cage = plan(vertices, contacts + off * np.array([[1, -1], [-1, 0], [0, 1]]), radius)
+    return [cage.status, cage.sigma_0, cage.sigma_first, cage.sigma_max, cage.contacts]
 
 
 def _regions(name: str) -> Any:
@@ -91,21 +116,33 @@ def _grasps_of_its_hand(name: str) -> Any:
     return grasps_of_hand(outline, HandShape.from_contacts(cage.contacts))
 
 
+def _sublevels(name: str) -> Any:
+    cage = cage_of(name)
+    return icage.sublevels(cage.outline, cage.hand)
+
+
+def _search(name: str) -> Any:
+    outline = Outline(SIZES[2] * np.array(SEARCHED[name]))
+    return [case.contacts for case in icage.load(outline).grasps(top=2)]
+
+
 ASKED: Final[dict[str, Callable[[str], Any]]] = {
-    "plan": _plan, "paper": _by_the_paper, "regions": _regions, "query": _query,
+    "plan": _plan, "moved": _moved, "paper": _by_the_paper, "regions": _regions, "query": _query,
     "starts": _starts, "friction": _friction, "place": _place, "hand": _grasps_of_its_hand,
 }  # fmt: skip
 
 
 def questions() -> list[tuple[str, str]]:
     """What is asked, and of which object."""
-    return [(asked, name) for asked in ASKED for name in OBJECTS]
+    whole = [("sublevels", name) for name in OBJECTS if name.endswith("-1")]
+    found = [("search", name) for name in SEARCHED]
+    return [(asked, name) for asked in ASKED for name in OBJECTS] + whole + found
 
 
 def answer(asked: str, name: str) -> Any:
     """The answer as plain numbers and words; of a question that is refused, which error."""
     try:
-        return told(ASKED[asked](name))
+        return told({**ASKED, "sublevels": _sublevels, "search": _search}[asked](name))
     except icage.errors.IcageError as error:
         return type(error).__name__
 
