@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from icage.checks import a_number
+from icage.checks import a_count, a_number
 from icage.errors import InputError
 
 
@@ -114,6 +114,18 @@ class SimConfig:
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
+        for name in (
+            "finger_mass", "contact_solref", "contact_damping", "linkage_solref",
+            "solver_tolerance", "still_speed", "pinched_size",
+        ):  # fmt: skip
+            a_number(getattr(self, name), f"SimConfig.{name}")
+        for name in ("solver_iterations", "still_steps"):
+            a_count(getattr(self, name), f"SimConfig.{name}", 1)
+        solimp: object = self.solimp  # as it came
+        if not isinstance(solimp, tuple) or len(self.solimp) != 5:
+            raise InputError(f"SimConfig.solimp is {solimp!r}; five numbers are needed")
+        for value in self.solimp:
+            a_number(value, "SimConfig.solimp")
         contacts = self.computed_contacts
         if contacts not in (0, 1, 2, 3):
             raise InputError(f"SimConfig.computed_contacts is {contacts!r}; 0 to 3 is needed")
