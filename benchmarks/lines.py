@@ -1,6 +1,6 @@
 """Which lines of ``icage`` and ``sim`` do the tests run? Kernels are interpreted for that.
 
-    pip install coverage
+    pip install -e ".[test,lines]"
     python -m benchmarks.lines --json benchmarks/lines.json  # all fast tests: hours on one core
     python -m benchmarks.lines tests/icage/geometry --below 95
 

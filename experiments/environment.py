@@ -23,7 +23,9 @@ ROOT = Path(__file__).resolve().parent.parent
 _STAMP = "icage-installed"
 
 
-def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
+def environment(
+    name: str, extras: str = "", *, lowest: bool = False, by: Path | None = None
+) -> Path:
     """Python of the environment ``ROOT/name``, made or brought up to date first.
 
     Parameters
@@ -34,12 +36,19 @@ def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
         Extras of the project to install, e.g. ``"[dev]"``.
     lowest:
         Install the lower bounds pyproject.toml declares instead of the pinned versions.
+    by:
+        The Python that it is of, if not this one; then nothing is built, only wheels are taken.
+
+    Raises
+    ------
+    subprocess.CalledProcessError:
+        It cannot be made, or what is needed cannot be installed.
     """
     folder = ROOT / name
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     constraints = folder / "lower-bounds.txt" if lowest else ROOT / "constraints.txt"
     wanted = lower_bounds() if lowest else constraints.read_text(encoding="utf-8")
-    state = wanted + (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    state = wanted + (ROOT / "pyproject.toml").read_text(encoding="utf-8") + str(by or "")
     digest = hashlib.sha256(state.encode()).hexdigest()
     stamp = folder / _STAMP
     made_of, had = _read_stamp(stamp)
@@ -47,12 +56,16 @@ def environment(name: str, extras: str = "", *, lowest: bool = False) -> Path:
         return python
     extras = extras or had  # whoever needs less is served by more, and takes nothing away
     print(f"icage: preparing the environment {name}", file=sys.stderr, flush=True)
-    if not python.exists():
+    if by is not None:  # made anew: it may be of another Python
+        subprocess.run([str(by), "-m", "venv", "--clear", str(folder)], check=True)
+    elif not python.exists():
         _create(folder)
     stamp.unlink(missing_ok=True)
     if lowest:
         constraints.write_text(wanted, encoding="utf-8")
     target = ["-c", str(constraints), "-e", f"{ROOT}{extras}"]
+    if by is not None:
+        target.append("--only-binary=:all:")
     subprocess.run([*_pip(python), "install", "--quiet", *target], check=True, cwd=ROOT)
     stamp.write_text(f"{digest} {extras}", encoding="utf-8")
     return python

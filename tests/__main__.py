@@ -7,6 +7,7 @@ non-zero if any of them failed.
     python3 -m tests                  all of it
     python3 -m tests --fast           without the tests marked slow
     python3 -m tests --lowest --fast  only pytest, with the declared lower bounds installed
+    python3 -m tests --newest --fast  only pytest, by the newest Python here that has all wheels
     python3 -m tests --here           in the environment of this Python
     python3 -m tests --fast tests/sim any further argument goes to pytest
 """
@@ -21,6 +22,7 @@ import time
 from pathlib import Path
 
 from experiments.environment import ROOT, environment
+from tests.newer_python import newer_pythons
 
 CHECKS = {
     "format": ["ruff", "format", "--check", "."],
@@ -34,24 +36,48 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python3 -m tests", description="run all checks")
     parser.add_argument("--fast", action="store_true", help="leave out the tests marked slow")
     parser.add_argument("--lowest", action="store_true", help="pytest at the lower bounds only")
+    parser.add_argument("--newest", action="store_true", help="pytest by the newest Python only")
+    parser.add_argument("--workers", type=int, default=2, help="processes of pytest")
     parser.add_argument("--here", action="store_true", help="use this Python's environment")
     options, further = parser.parse_known_args()
     if options.here:
         python = Path(sys.executable)
     elif options.lowest:
         python = environment(".venv-lowest", "[test]", lowest=True)
+    elif options.newest:
+        found = newest_environment()
+        if found is None:
+            return 0
+        python = found
     else:
         python = environment(".venv", "[dev]")
-    compiling = None if options.lowest or further else compile_kernels(python)
-    failed = [] if options.lowest else [name for name in CHECKS if not check(name, python)]
+    only_tests = options.lowest or options.newest
+    compiling = None if only_tests or further else compile_kernels(python)
+    failed = [] if only_tests else [name for name in CHECKS if not check(name, python)]
     if compiling is not None:
         compiling.wait()  # what failed here fails again in the tests, and says why
     if failed:
         print(f"== failed so far: {', '.join(failed)}", flush=True)
     fast = ["-m", "not slow"] if options.fast else []
-    command = [str(python), "-m", "pytest", "-q", "-n", "2", "--dist", "worksteal"]
+    workers = str(options.workers)
+    command = [str(python), "-m", "pytest", "-q", "-n", workers, "--dist", "worksteal"]
     tested = subprocess.run([*command, *fast, *further], check=False, cwd=ROOT)
     return tested.returncode or int(bool(failed))
+
+
+def newest_environment() -> Path | None:
+    """An environment of the newest Python on this machine for which everything has wheels."""
+    for python in newer_pythons():
+        try:
+            made = environment(".venv-newest", "[test]", by=python)
+        except subprocess.CalledProcessError:
+            print(f"== {python} has not all wheels: an older one is tried", flush=True)
+            continue
+        print(f"== newest Python: {python}", flush=True)
+        return made
+    mine = ".".join(map(str, sys.version_info[:2]))
+    print(f"== newest Python: none newer than {mine} here, nothing more is tested", flush=True)
+    return None
 
 
 def compile_kernels(python: Path) -> subprocess.Popen[bytes]:

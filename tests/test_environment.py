@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from experiments.environment import ROOT, _pip, environment, lower_bounds, run_in
+from tests.newer_python import newer_pythons
 
 
 def test_lower_bounds_are_those_declared():
@@ -57,6 +58,46 @@ def test_an_environment_that_is_up_to_date_is_left_alone(tmp_path: Path, monkeyp
     environment(".venv")
     assert len(calls) == 2
     assert "[dev]" in str(calls[-1])  # what was there stays
+
+
+def test_an_environment_of_another_python_takes_wheels_only(tmp_path: Path, monkeypatch):
+    calls: list[list[str]] = []
+    monkeypatch.setattr("experiments.environment.ROOT", tmp_path)
+    monkeypatch.setattr("subprocess.run", lambda command, **_: calls.append(command))
+    monkeypatch.setattr("experiments.environment._pip", lambda python: [str(python), "-m", "pip"])
+    (tmp_path / "pyproject.toml").write_text("a = 1")
+    (tmp_path / "constraints.txt").write_text("numpy==2.4.6")
+    other = Path("python3.19")
+    made = tmp_path / ".venv-newest/bin"
+    made.mkdir(parents=True)
+    environment(".venv-newest", "[test]", by=other)
+    assert calls[0][:3] == [str(other), "-m", "venv"]
+    assert "--only-binary=:all:" in calls[1]
+    (made / "python").touch()
+    environment(".venv-newest", "[test]", by=other)
+    assert len(calls) == 2
+    environment(".venv-newest", "[test]", by=Path("python3.20"))
+    assert len(calls) == 4
+
+
+@pytest.mark.skipif(os.name == "nt", reason="programs are shell scripts here")
+def test_newer_pythons_are_those_that_run_and_are_released(tmp_path: Path, monkeypatch):
+    """On PATH: one that is released, one that is not, one that only complains, and pyenv's."""
+    minor = sys.version_info.minor
+    for name, answer in {
+        f"python3.{minor + 1}": f"echo 3 {minor + 1} final",
+        f"python3.{minor + 2}": "echo no such version >&2; exit 127",
+        f"python3.{minor + 3}": f"echo 3 {minor + 3} candidate",
+        "pyenv": f'[ "$1" = prefix ] && echo {tmp_path}/own || echo 3.{minor + 2}.4',
+        "own/bin/python": f"echo 3 {minor + 2} final",
+    }.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!/bin/sh\n{answer}\n")
+        path.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}/bin")
+    found = [path.relative_to(tmp_path).as_posix() for path in newer_pythons()]
+    assert found == ["own/bin/python", f"python3.{minor + 1}"]
 
 
 def test_an_environment_without_pip_is_served_by_this_pip(tmp_path: Path):

@@ -71,12 +71,12 @@ def _random_voids() -> Iterator[tuple[str, bool]]:
 
 def _flooded(centres: np.ndarray, radii: np.ndarray, steps: int) -> bool:
     axis = np.linspace(-1.4, 1.4, 2 * steps + 1)
-    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
-    free = np.ones(grid.shape[:3], dtype=bool)
+    free = np.ones((len(axis),) * 3, dtype=bool)
     for centre, radius in zip(centres, radii, strict=True):
         near = [np.flatnonzero(np.abs(axis - c) <= radius) for c in centre]
-        block = grid[np.ix_(*near)]
-        free[np.ix_(*near)] &= ((block - centre) ** 2).sum(axis=-1) > radius**2
+        block = tuple(slice(found[0], found[-1] + 1) for found in near)
+        x, y, z = ((axis[part] - c) ** 2 for part, c in zip(block, centre, strict=True))
+        free[block] &= x[:, None, None] + y[:, None] + z > radius**2
     found, _ = ndimage.label(free)
     return bool(found[steps, steps, steps] != found[0, 0, 0])
 

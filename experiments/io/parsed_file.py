@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from icage.errors import InputError
+from icage.formats.streams import up_to
 
 
 def parsed_file(
@@ -20,8 +21,7 @@ def parsed_file(
         It is larger, cannot be read, or is of no such format.
     """
     try:
-        with path.open("rb") as stream:  # a device has no size, and no end
-            content = stream.read(largest + 1)
+        content = up_to(path, largest + 1)
         if len(content) > largest:
             raise error(f"{str(path)!r} is larger than {largest} bytes")
         return parse(content.decode("utf-8").replace("\r\n", "\n"))

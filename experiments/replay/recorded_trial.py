@@ -24,6 +24,7 @@ from experiments.io.versions import versions
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
 from icage.errors import InputError
+from icage.formats.json_text import points
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from icage.staging import sweep
@@ -164,10 +165,12 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
         }
         config = SimConfig(**kept)
         x, y = run["plan"]["hand"]["unit_fingers"][2]
-        return RecordedTrial(
+        trial = RecordedTrial(
             index, row, run, dict(document["versions"]),
             Outline(run["outline"]["vertices"]), HandShape(complex(x, y)), config,
         )  # fmt: skip
+        _ = trial.grasps  # what is wrong with them is said here
+        return trial
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error
 
@@ -244,7 +247,7 @@ def _grasp(grasp: dict[str, Any], sigma_0: float) -> GraspMinimum:
         id=grasp["id"],
         target=grasp["target"],
         sigma=grasp["sigma_0"],
-        contacts=np.array(grasp["contacts"]),
+        contacts=points(grasp["contacts"], "contacts", least=3, most=3),
         plateau=None if ends is None else (np.array(ends[0]), np.array(ends[1])),
         free_fingers=tuple(grasp["free_fingers"]),
         joined_at=sigma_0,

@@ -66,17 +66,21 @@ def parse_case(data: object, folder: Path, sources: tuple[Path, ...] = (), grasp
         return replace(found.with_grasp(contacts), name=_name_of(case, found.name, grasp))
 
 
-def has_grasp(path: Path) -> bool:
-    """Whether a JSON file means to have a grasp; one misspelt is an error of ``read_case``.
+def read_any(path: Path, grasp: int = 1) -> Case:
+    """The case in a JSON file, or its object alone where it means to have no grasp.
+
+    A grasp that is misspelt is an error. The file is read once: it may be a pipe.
 
     Raises
     ------
     InputError:
-        It is no JSON object.
+        As ``read_case``.
     """
     with _told_with(str(path)):
         case = an_object(read_json(path), "the case")
-    return case.get("format") != FORMAT or any(key.lower() == "grasp" for key in case)
+        if case.get("format") != FORMAT or any(key.lower() == "grasp" for key in case):
+            return parse_case(case, path.parent, (path,), grasp)
+        return parse_object(case, path.parent, (path,))
 
 
 def read_object(path: Path) -> Case:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from icage.errors import FormatError
+from icage.formats.streams import up_to
 
 
 def read_bytes(path: Path, limit: int, what: str) -> bytes:
@@ -13,15 +14,14 @@ def read_bytes(path: Path, limit: int, what: str) -> bytes:
     Raises
     ------
     FormatError:
-        No such file, a folder, not readable, empty, or larger than the limit.
+        No such file, a folder, not readable, a pipe that nobody writes to, empty, or too large.
     """
     try:
         if path.is_dir():
             raise FormatError(f"{path} is a folder; {what} is needed")
         if not path.exists():
             raise FormatError(f"{path} does not exist; {what} is needed")
-        with path.open("rb") as file:
-            content = file.read(limit + 1)
+        content = up_to(path, limit + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise FormatError(f"{str(path)!r} cannot be read: {reason}") from error

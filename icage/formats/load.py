@@ -13,7 +13,7 @@ from icage.cage import Cage
 from icage.case import Case
 from icage.checks import a_count
 from icage.errors import CaseError, InputError
-from icage.formats.case_json import has_grasp, parse_unit, read_case, read_object
+from icage.formats.case_json import parse_unit, read_any, read_case, read_object
 from icage.formats.drawings.read import is_drawing, trace_file
 from icage.formats.drawings.reading import Reading, ReadingOptions, option_of
 from icage.outline import Outline
@@ -180,10 +180,10 @@ def _read(found: Named, grasp: int | None) -> Case:
     if found.shipped is not None:
         return read_case(found.cases[_index(grasp, len(found.cases), found.shipped)])
     path = found.cases[0]
-    if not has_grasp(path):
+    case = read_any(path, 1 if grasp is None else grasp)
+    if case.target is None:
         _refuse(f"{path} has no grasp", grasp=grasp)
-        return read_object(path)
-    return read_case(path, 1 if grasp is None else grasp)
+    return case
 
 
 def _index(grasp: int | None, count: int, name: str) -> int:

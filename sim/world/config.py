@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import cast
 
-from icage.checks import a_number
+from icage.checks import a_count, a_number
 from icage.errors import InputError
 
 
@@ -114,6 +115,14 @@ class SimConfig:
             value = a_number(getattr(self, name), f"SimConfig.{name}")
             if not value > 0.0:
                 raise InputError(f"SimConfig.{name} is {value}; a positive number is needed")
+        for name in (
+            "finger_mass", "contact_solref", "contact_damping", "linkage_solref",
+            "solver_tolerance", "still_speed", "pinched_size",
+        ):  # fmt: skip
+            a_number(getattr(self, name), f"SimConfig.{name}")
+        for name in ("solver_iterations", "still_steps"):
+            a_count(getattr(self, name), f"SimConfig.{name}", 1)
+        _check_solimp(self.solimp)
         contacts = self.computed_contacts
         if contacts not in (0, 1, 2, 3):
             raise InputError(f"SimConfig.computed_contacts is {contacts!r}; 0 to 3 is needed")
@@ -136,3 +145,10 @@ class SimConfig:
     def max_steps(self) -> int:
         """[step] Bound on the length of one closing."""
         return math.ceil(self.max_time / self.time_step)
+
+
+def _check_solimp(value: object) -> None:
+    if not isinstance(value, tuple) or len(cast("tuple[object, ...]", value)) != 5:
+        raise InputError(f"SimConfig.solimp is {value!r}; five numbers are needed")
+    for number in cast("tuple[object, ...]", value):
+        a_number(number, "SimConfig.solimp")

@@ -39,7 +39,7 @@ def test_a_slice_of_the_campaign(kind: str, campaign: Campaign) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", RECORDED[1:])
+@pytest.mark.parametrize("kind", RECORDED)
 def test_a_slice_of_what_was_recorded(kind: str, campaign: Campaign) -> None:
     test_a_slice_of_the_campaign(kind, campaign)
 

@@ -15,14 +15,14 @@ from typing import Final
 
 import numpy as np
 
-from experiments.study.inputs.config import StudyConfig
+from experiments.study.inputs.config import ConfigError, StudyConfig
 from experiments.study.inputs.variables import fields_of
 from icage.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
 from icage.placing.best import place
-from icage.sampling import Box, StartSet, draw_starts
+from icage.sampling import Box, SamplingError, StartSet, draw_starts
 
 BLOCK: Final = 250
 """[placement] Drawn together; a start depends on the seed and its number, not on the shard."""
@@ -70,7 +70,7 @@ class Intended:
 
         Raises
         ------
-        SamplingError:
+        ConfigError:
             The set is too small to be drawn from.
         """
         if self.nominal is not None:
@@ -92,7 +92,7 @@ class Intended:
                 self._box = Box.around(self._cage, which)
             while len(self._blocks) >= 64:  # shards come in order: the oldest is not asked again
                 del self._blocks[next(iter(self._blocks))]
-            self._blocks[key] = draw_starts(self._cage, which, BLOCK, rng, box=self._box).placements
+            self._blocks[key] = _drawn(self._cage, which, BLOCK, rng, self._box)
         return self._blocks[key]
 
 
@@ -112,12 +112,25 @@ def roomiest(cage: Cage, seed: int) -> FloatArray:
     open before it leaves the guaranteed set.
     """
     rng = np.random.default_rng([seed, _NOMINAL])
-    rows = draw_starts(cage, "guaranteed", _ROOMY, rng).placements
+    rows = _drawn(cage, "guaranteed", _ROOMY, rng)
     fingers = cage.hand.fingers(rows).reshape(-1, 2)
     depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
     first = np.inf if cage.sigma_first is None else cage.sigma_first
     room = np.minimum(-depth.max(axis=1), first - rows[:, 3])
     return np.array(rows[int(np.argmax(room))])
+
+
+def _drawn(
+    cage: Cage, which: StartSet, count: int, rng: np.random.Generator, box: Box | None = None
+) -> FloatArray:
+    """Placements (count, 4) of a set; that it is empty or too small is no fault of ours."""
+    try:
+        return draw_starts(cage, which, count, rng, box=box).placements
+    except SamplingError as error:
+        raise ConfigError(
+            f"starts: {error}; a nominal placement of your own (nominal = [x, y, theta, sigma]) or "
+            "another grasp is needed"
+        ) from error
 
 
 def moved(

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from experiments.cases.with_discs import physical_case
 from experiments.io.changes import changes
 from experiments.io.versions import CODE, versions
 from experiments.study.inputs.config import StudyConfig, config_of
@@ -17,7 +18,6 @@ from icage.case import Case
 from icage.cells.membership import VERDICTS, query
 from icage.errors import InputError
 from icage.formats.case_json import parse_case
-from icage.planner import plan
 
 FORMAT: Final = "icage-study/1"
 
@@ -65,11 +65,13 @@ def study_of(document: Mapping[str, Any], trials: int | None = None) -> Study:
     Raises
     ------
     InputError:
-        It is no study's document.
+        It is no study's document, or its case is one that no study is made of: no cage, no discs.
     """
     case, config = parsed_document(document, trials)
-    cage = plan(case.outline, case.contacts, case.finger_radius)
-    return Study(config, case, cage)
+    if not case.finger_radius:
+        raise InputError("not a study's document: finger_radius 0; a study's case has discs")
+    physical = physical_case(case)
+    return Study(config, physical.case, physical.cage)
 
 
 def parsed_document(

@@ -109,7 +109,11 @@ def _rename(holder: Any, k: int, root: list[Any], random: Random) -> None:
 
 def _move(holder: Any, k: int, root: list[Any], random: Random) -> None:
     """Another value of the same document."""
-    _set(holder, k, deepcopy(_get(*random.choice(_places(root)))))
+    other = _get(*random.choice(_places(root)))
+    try:
+        _set(holder, k, deepcopy(other))
+    except RecursionError:  # moved into itself before, so deep that it is copied as text
+        _set(holder, k, Written(written(other)))
 
 
 def _nest(holder: Any, k: int, root: list[Any], random: Random) -> None:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import json
 import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import numpy as np
 import pytest
 
 import icage
+from experiments.study.inputs.config import read_toml
 from icage.case import Case
 from icage.errors import CaseError, FormatError, InputError
+from icage.formats import streams
 from icage.formats.case_json import case_document, grasp_name, read_case
 from icage.formats.json_out import write_json
+from icage.formats.placements_csv import read_placements
 from icage.outline import Outline
-from models import case_paths
+from models import CASES, case_paths
 from tests.experiments.small import t_case, write_case
 from tests.icage.formats.svg.drawings import drawing
 
@@ -196,6 +201,51 @@ def test_a_pipe_that_nobody_writes_to_is_refused_at_once(tmp_path: Path, suffix:
     os.mkfifo(pipe)
     with pytest.raises(FormatError, match="is a pipe or a device"):
         icage.load(pipe, width=1.0, unit="mm")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+@pytest.mark.parametrize("name", ["a.json", "a.csv", "a.toml", "a"])
+def test_a_pipe_that_nobody_writes_to_is_not_waited_for_for_ever(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(streams, "NOBODY", 0.2)
+    pipe = tmp_path / name
+    os.mkfifo(pipe)
+    with pytest.raises(InputError, match="a pipe, and in .* nobody wrote to it"):
+        {"a.csv": read_placements, "a.toml": read_toml}.get(name, icage.load)(pipe)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+@pytest.mark.parametrize("pause", [0.0, 0.3])
+def test_a_case_comes_through_a_pipe(tmp_path: Path, pause: float):
+    """Late, and in two pieces."""
+    pipe, content = tmp_path / "a.json", (CASES / "T_best.json").read_bytes()
+    os.mkfifo(pipe)
+
+    def write() -> None:
+        sleep(pause)
+        with pipe.open("wb", buffering=0) as file:
+            file.write(content[:100])
+            sleep(pause)
+            file.write(content[100:])
+
+    with ThreadPoolExecutor() as pool:
+        writing = pool.submit(write)
+        assert icage.load(pipe).target is not None
+        writing.result()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+def test_a_writer_that_is_silent_is_not_waited_for_for_ever(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(streams, "SILENT", 0.2)
+    pipe = tmp_path / "a.json"
+    os.mkfifo(pipe)
+    both = os.open(pipe, os.O_RDWR)
+    with pytest.raises(InputError, match="nothing was written to it for 0.2 s"):
+        icage.load(pipe)
+    os.close(both)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Generator
-from contextlib import ExitStack, closing, suppress
+from contextlib import AbstractContextManager, ExitStack, closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Thread
@@ -28,7 +28,8 @@ from experiments.study.run.cluster import on_cluster, run_remote, shard_in
 from experiments.study.run.document import study_of
 from experiments.study.run.folder import StudyFolder
 from experiments.study.run.shards import shard_table
-from tests.experiments.study.studies import Studied, left_alone
+from tests.experiments.study.run.certificates import authority_and_member
+from tests.experiments.study.studies import TRIALS, Studied, left_alone
 
 distributed = pytest.importorskip("distributed")
 
@@ -60,12 +61,15 @@ def started(tmp_path: Path) -> Generator[Callable[..., Cluster]]:
             stack.callback(child.kill)
             return child
 
-        def of(workers: int, **environment: str) -> Cluster:
-            address = f"tcp://127.0.0.1:{free_port()}"
+        def of(workers: int, protocol: str = "tcp", **environment: str) -> Cluster:
+            address = f"{protocol}://127.0.0.1:{free_port()}"
             listen = ("--host", "127.0.0.1", "--port", address.rpartition(":")[2])
-            scheduler = start("dask_scheduler", *listen, **environment)
+            said = ("--protocol", protocol)
+            scheduler = start("dask_scheduler", *listen, *said, **environment)
             alone = ("--nthreads", "1", "--no-nanny", "--local-directory", str(tmp_path / "dask"))
-            crew = [start("dask_worker", address, *alone) for _ in range(workers)]
+            crew = [
+                start("dask_worker", address, *alone, *said, **environment) for _ in range(workers)
+            ]
             with distributed.Client(address, timeout=60, set_as_default=False) as client:
                 client.wait_for_workers(workers, timeout=60)
             return Cluster(address, scheduler, crew)
@@ -128,6 +132,37 @@ def test_a_worker_is_killed(folder: Path, study: Studied, started: Any, after: A
     assert there.workers[0].wait(60) != 0
     assert there.workers[1].poll() is None
     study.check_same(alone)
+
+
+@pytest.mark.slow
+def test_over_tls_and_not_without_a_certificate_of_the_authority(
+    folder: Path, study: Studied, started: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    alone = left_alone(folder)
+    ours, others = (authority_and_member(tmp_path / name) for name in ("ours", "others"))
+    with configured(ours):
+        there = started(1, "tls", **ours)
+        result = study.run("--scheduler", there.address)
+    assert (result.code, result.err) == (0, "")
+    study.check_same(alone)
+    before = study.files
+    monkeypatch.setattr(clusters, "_SCHEDULER_WAIT", 2)
+    plain = there.address.replace("tls:", "tcp:")
+    for given, address in (({}, there.address), (others, there.address), (ours, plain)):
+        with configured(given):
+            refused = study.run("--scheduler", address, "--resume", "--trials", str(TRIALS + 1))
+        assert refused.code == 2
+        (line,) = refused.err.splitlines()
+        assert line.startswith(f"icage: error: --scheduler '{address}' does not answer: ")
+        assert study.files == before
+
+
+def configured(environment: dict[str, str]) -> AbstractContextManager[Any]:
+    """dask in this process, as it would be with such an environment."""
+    import dask.config
+
+    keys = {name: name.removeprefix("DASK_").lower().replace("__", ".") for name in environment}
+    return dask.config.set({keys[name]: value for name, value in environment.items()})
 
 
 @pytest.mark.slow

@@ -7,9 +7,12 @@ import json
 import numpy as np
 import pytest
 
+from experiments.study.inputs.config import ConfigError
 from experiments.study.run.document import study_document, study_of
 from experiments.study.run.rows import table_of
 from experiments.study.run.shard import Study, run_trials
+from icage import sampling
+from icage.errors import InputError
 from tests.experiments.study.run.trials import outcomes, study
 
 MUCH = {
@@ -73,3 +76,28 @@ def test_a_study_read_from_its_document_runs_the_same_trials():
     assert again.config == one.config
     rows = [table_of(s, run_trials(s, np.arange(4))) for s in (one, again)]
     assert rows[0].equals(rows[1])
+
+
+@pytest.mark.parametrize(
+    ("radius", "contacts", "words"),
+    [
+        (0.0, [[0.5, 1.0], [0.1, 3.4], [-0.5, 1.0]], "a study's case has discs"),
+        (0.1, [[0.6, 1.9], [0.1, 3.5], [-0.6, 1.2]], "is not a cage: no equilibrium"),
+    ],
+    ids=["points", "no cage"],
+)
+def test_a_document_of_what_is_no_cage_is_refused(radius: float, contacts: object, words: str):
+    document = json.loads(json.dumps(study_document(study())))
+    document["case"] |= {"finger_radius": radius, "contacts": contacts}
+    with pytest.raises(InputError, match=words):
+        study_of(document)
+
+
+def test_a_set_too_small_to_draw_from_is_refused(monkeypatch: pytest.MonkeyPatch):
+    """Where the intended placement is looked for there, and where all of them are drawn."""
+    drawn = study(starts="cage")
+    monkeypatch.setattr(sampling, "TRIES_PER_START", 0)
+    with pytest.raises(ConfigError, match="too small to draw from: 0 of .* is needed"):
+        study(starts="nominal")
+    with pytest.raises(ConfigError, match="too small to draw from: 0 of .* is needed"):
+        run_trials(drawn, np.arange(2))
