@@ -129,7 +129,10 @@ def _levels(cage: Cage, work: CageWork, level: float | None, gap: float) -> tupl
     chosen = top if level is None else float(level)
     if not cage.sigma_0 < chosen <= top:
         raise InputError(f"level {chosen}; above sigma_0 = {cage.sigma_0}, up to {top} is allowed")
-    return chosen, min(chosen, work.search.level) * (1.0 - REGION_LEVEL)
+    own = work.search.level
+    if work.polygon_first is not None and chosen <= (cage.sigma_first or 0.0):
+        own = min(own, work.polygon_first)  # or the polygon joins others before the true curve does
+    return chosen, min(chosen, own) * (1.0 - REGION_LEVEL)
 
 
 def _level_name(cage: Cage, level: float) -> str:

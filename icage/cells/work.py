@@ -37,8 +37,8 @@ class CageWork:
     sagitta: float = 0.0
     """How far the polygon searched may lie inside the true offset, [unit] (0 for points)."""
     polygon_first: float | None = None
-    """The polygon's own level of the puncture at sigma_first, [unit], where the cage has the levels
-    of the true curve: what it joins below that is the target's to the true curve."""
+    """Where the cage has the levels of the true curve: what the polygon searched joins to the
+    target below this level, [unit], is the target's to the true curve, too."""
     remembered: dict[str, object] = field(default_factory=dict[str, object])
     """Point location and escape levels, built when first asked for (see membership)."""
 

@@ -217,7 +217,7 @@ class _Polygons:
             work = replace(
                 work,
                 minimum_node=tuple(work.minimum_node[k] for k in levels.origin),
-                polygon_first=np.inf if levels.polygon_first is None else levels.polygon_first,
+                polygon_first=np.inf if levels.polygon_joins is None else levels.polygon_joins,
                 sagitta=inner.sagitta,
             )
         return replace(

@@ -9,6 +9,7 @@ depths are judged by solved levels. What cannot be solved is left as the polygon
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -50,8 +51,11 @@ class TrueLevels:
     rough_first: float | None
     """sigma_first if only minima counted that are deeper than 1e-6 of the diameter."""
     polygon_first: float | None
-    """The polygon's own level of the puncture at sigma_first: below it the polygon joins to the
-    target only what the true curve does not tell from it."""
+    """The polygon's own level of the puncture at sigma_first."""
+    polygon_joins: float | None
+    """The least level at which the polygon joins to the target what the true curve joins to it at
+    sigma_first or later: below it the polygon's cells are the target's. Less than
+    ``polygon_first`` where several of its punctures are one on the true curve."""
 
 
 def true_levels(
@@ -100,6 +104,7 @@ class _Solving:
         solved: list[bool] = []
         last: tuple[Puncture, bool] | None = None
         polygon_level: dict[float, float] = {}
+        joinings: list[tuple[float, float]] = []
         rough: list[float] = []
         for puncture in self._cage.punctures:
             if puncture.kind == "escape":
@@ -112,6 +117,7 @@ class _Solving:
             joined |= set(new)
             found, is_solved = self._puncture(puncture)
             polygon_level.setdefault(found.sigma, puncture.sigma)
+            joinings.append((found.sigma, puncture.sigma))
             lowest = min(self._grasps[k].sigma for k in new)
             if found.sigma - lowest <= self._least_depth:
                 continue
@@ -128,7 +134,12 @@ class _Solving:
             levels,
             rough_first=min([*rough, *ends], default=None),
             polygon_first=None if first is None else polygon_level[first],
-        )
+            polygon_joins=None if first is None else min(
+                polygon_level[first],
+                *(own for true, own in joinings if true >= first * (1.0 - 2.0 * LEVEL)),
+                math.inf,
+            ),
+        )  # fmt: skip
 
     def _add(self, grasp: GraspMinimum, known: Critical | None) -> None:
         """Solve a grasp and give it its place, that of another one if they are the same."""
@@ -214,4 +225,5 @@ class _Solving:
             origin=tuple(self._origin[p] for p in kept),
             rough_first=None,
             polygon_first=None,
+            polygon_joins=None,
         )
