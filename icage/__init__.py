@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from icage.placement_class import PlacementClass
     from icage.placing.best import BestPlacement, place
     from icage.planner import plan
+    from icage.shelf import Shelf
 
 __version__ = "0.1.0"
 
@@ -59,6 +60,7 @@ _WHERE = {
     "Placement": "icage.hand",
     "PlacementClass": "icage.placement_class",
     "Puncture": "icage.cage",
+    "Shelf": "icage.shelf",
     "Sublevels": "icage.minima",
     "friction_curve": "icage.friction.curve",
     "friction_levels": "icage.friction.levels",
@@ -91,6 +93,7 @@ __all__ = [
     "Placement",
     "PlacementClass",
     "Puncture",
+    "Shelf",
     "Sublevels",
     "friction_curve",
     "friction_levels",

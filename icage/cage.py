@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal, cast, overload
 
 import numpy as np
 import shapely
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
     from icage.friction.levels import FrictionLevel, JamTolerance
+    from icage.shelf import Shelf
 
 
 class CageStatus(StrEnum):
@@ -251,6 +252,29 @@ class Cage(Value):
             one_of(level, ("sigma_max", "sigma_first"), "level")
             return self.sigma_first if level == "sigma_first" else self.sigma_max
         return a_number(level, "level")
+
+    @property
+    def shelf(self) -> Shelf | None:
+        """The least hands below sigma_first in which closing may stop with nothing to hold it.
+
+        On opposing parallel edges a hand may balance the motor and slide at constant sigma. None
+        where there are none, and for cages planned by the contact space, which does not look.
+        """
+        if self.work is None:
+            return None
+        if "shelf" not in self.work.remembered:
+            from icage.shelf import shelf_of
+
+            self.work.remembered["shelf"] = shelf_of(self, self.work)
+        return cast("Shelf | None", self.work.remembered["shelf"])
+
+    @property
+    def sigma_guaranteed(self) -> float | None:
+        """[unit] Below it closing ends in the target: sigma_first, or the ``shelf`` below it.
+
+        None if closing does so however far the hand opens.
+        """
+        return self.sigma_first if self.shelf is None else self.shelf.sigma
 
     def friction(self, mu: float, tolerance: JamTolerance | None = None) -> FrictionLevel:
         """Below which level closing ends near the target although the fingers rub.

@@ -93,7 +93,8 @@ def has_rest(cage: Cage) -> bool:
     if cage.sigma_first is None or cage.status == "not_a_cage":
         return False
     top = safe_level(cage.sigma_max, cage.sigma_0)
-    return cage.sigma_first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
+    first = cage.sigma_guaranteed or cage.sigma_first
+    return first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
 
 
 def same_set(cage: Cage, which: StartSet) -> StartSet:
@@ -170,7 +171,7 @@ class Box:
         """
         which = same_set(cage, which)
         if which == "guaranteed":
-            top = min(safe_level(cage.sigma_first, cage.sigma_0), below)
+            top = min(safe_level(cage.sigma_guaranteed, cage.sigma_0), below)
             level, floor = (None if np.isinf(top) else top), cage.sigma_0
         else:
             top = safe_level(cage.sigma_max, cage.sigma_0)

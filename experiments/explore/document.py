@@ -63,6 +63,7 @@ def query_document(tables: QueryTables) -> dict[str, Any]:
         "held": tables.held,
         "held_lost": tables.held_lost,
         "same_level": tables.same_level,
+        "first": tables.first,
         "polygon_first": tables.polygon_first,
         "grasp_nodes": cage.grasp_nodes,
         "grasp_sigmas": cage.grasp_sigmas,

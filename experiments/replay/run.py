@@ -209,7 +209,7 @@ def run_document(run: Run, plan_document: dict[str, Any]) -> dict[str, Any]:
     size = run.case.outline.diameter
     reached = run.verdicts.outcome == OUTCOMES.index("target")
     sigma = run.starts.placements[:, 3]
-    level = run.cage.sigma_first if run.which == "guaranteed" else run.cage.sigma_max
+    level = run.cage.sigma_guaranteed if run.which == "guaranteed" else run.cage.sigma_max
     limit = safe_level(None if run.which == "outside" else level, run.cage.sigma_0)
     return {
         "grasp": run.case.name,

@@ -273,7 +273,7 @@ def _judge_inside(
 ) -> None:  # fmt: skip
     """Placements whose cell joins the target's below the escape."""
     escape = np.inf if cage.sigma_max is None else cage.sigma_max
-    first = escape if cage.sigma_first is None else cage.sigma_first
+    first = escape if cage.sigma_guaranteed is None else cage.sigma_guaranteed
     at = np.flatnonzero(nodes >= 0)
     s = sigma[at]
     joined = work.search.node_level[nodes[at]] <= s * (1.0 + LEVEL)

@@ -83,6 +83,8 @@ class QueryTables:
         in it; and how far if no piece was found so.
     same_level:
         [1] Two levels this close (relative) are one.
+    first:
+        ``Cage.sigma_guaranteed``; None if closing ends in the target however far the hand opens.
     polygon_first:
         As ``CageWork.polygon_first``.
     pieces, cage:
@@ -99,6 +101,7 @@ class QueryTables:
     held: float
     held_lost: float
     same_level: float
+    first: float | None
     polygon_first: float | None
     pieces: PieceTables
     cage: CageTables
@@ -139,6 +142,7 @@ def query_tables(cage: Cage, workers: int = 1) -> QueryTables:
         held=HELD * size,
         held_lost=held_when_lost(sagitta, size),
         same_level=LEVEL,
+        first=cage.sigma_guaranteed,
         polygon_first=polygon_first,
         pieces=_pieces(work),
         cage=_cage(cage, work),

@@ -9,6 +9,7 @@ import shapely
 
 from icage.cage import Cage, SearchLog
 from icage.cells.regions import FingerRegion
+from icage.shelf import Shelf
 
 
 def plan_document(
@@ -30,6 +31,7 @@ def plan_document(
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
+        **({} if cage.shelf is None else {"shelf": _shelf(cage.shelf)}),
         **(_brackets(cage) if cage.finger_radius > 0.0 else {}),
         "punctures": [
             {
@@ -59,6 +61,10 @@ def plan_document(
         "warnings": cage.warnings,
         **({"search": _search(cage.search)} if cage.search is not None else {}),
     }
+
+
+def _shelf(shelf: Shelf) -> dict[str, Any]:
+    return {"sigma": shelf.sigma, "contacts": shelf.contacts}
 
 
 def _search(log: SearchLog) -> dict[str, Any]:
@@ -113,7 +119,11 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
     yield f"verdict      {cage.status.replace('_', ' ')}{f': {cage.why}' if cage.why else ''}"
     yield f"sigma_0      {cage.sigma_0:.9g} {unit}"
     if cage.status != "not_a_cage":
-        yield _level("sigma_first", cage.sigma_first, cage, "closing ends only in the target")
+        ends = "closing ends only in the target"
+        on_shelf = "" if cage.shelf is None else ", or stays on a shelf"
+        yield _level("sigma_first", cage.sigma_first, cage, ends + on_shelf)
+        if cage.shelf is not None:
+            yield _level("shelf", cage.shelf.sigma, cage, f"{ends} (parallel edges)")
         yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")
         for puncture in cage.punctures:
             joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""

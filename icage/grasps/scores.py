@@ -31,7 +31,7 @@ def level_of(cage: Cage, wanted: Wanted) -> float:
     if wanted.aim == "cage":
         return top
     if wanted.mu is None:
-        return top if cage.sigma_first is None else cage.sigma_first
+        return top if cage.sigma_guaranteed is None else cage.sigma_guaranteed
     first = cage.friction(wanted.mu).sigma_first
     return top if first is None else first
 

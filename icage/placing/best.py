@@ -148,7 +148,7 @@ def place(
         raise GraspError(f"there is nothing to place a hand for: not a cage, {cage.why}")
     if not 0.0 < a_number(gap, "gap") < 1.0:
         raise InputError(f"gap {gap}; a number between 0 and 1 is needed")
-    level = cage.sigma_first if mu == 0.0 else cage.friction(mu).sigma_first
+    level = cage.sigma_guaranteed if mu == 0.0 else cage.friction(mu).sigma_first
     size = _opening(cage, level, opening)
     if not largest > cage.sigma_0:
         raise InputError(f"largest {largest:g}; above sigma_0 = {cage.sigma_0:.9g} is needed")

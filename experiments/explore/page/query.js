@@ -19,7 +19,7 @@ export function queryOf({ plan, query }) {
   const cage = cageTables(query);
   const outside = outsideTable(query);
   const escape = plan.sigma_max ?? Infinity;
-  const first = plan.sigma_first ?? escape;
+  const first = query.first ?? escape;
   const same = 1.0 + query.same_level;
 
   return ({ x, y, theta, sigma }) => {

@@ -5,6 +5,7 @@ import { foreign, html, subscripted } from "./svg.js";
 
 /** The name and the answer in one sentence. */
 export function heading({ plan, length }) {
+  const first = plan.shelf ? plan.shelf.sigma : plan.sigma_first;
   const unit = plan.unit ? ` ${plan.unit}` : "";
   const kind = plan.finger_radius > 0
     ? `disc fingers of radius ${Number(plan.finger_radius.toPrecision(4))}${unit}` : "point fingers";
@@ -13,15 +14,15 @@ export function heading({ plan, length }) {
   if (plan.verdict === "not_a_cage") answer.append(`These contacts are not a cage: ${plan.why}.`);
   else if (plan.sigma_max === null) {
     answer.append("However far the hand opens, the object cannot leave it. ");
-    if (plan.sigma_first !== null) {
-      answer.append("Below ", ...level("first", plan.sigma_first), " closing can end only in the target grasp.");
+    if (first !== null) {
+      answer.append("Below ", ...level(plan.shelf ? "shelf" : "first", first), " closing can end only in the target grasp.");
     }
-  } else if (plan.sigma_first === plan.sigma_max) {
+  } else if (first === plan.sigma_max) {
     answer.append("Below ", ...level("max", plan.sigma_max),
       " the object cannot leave the hand, and closing can end only in the target grasp.");
   } else {
     answer.append("Below ", ...level("max", plan.sigma_max), " the object cannot leave the hand; below ",
-      ...level("first", plan.sigma_first), " closing can end only in the target grasp.");
+      ...level(plan.shelf ? "shelf" : "first", first), " closing can end only in the target grasp.");
   }
   const [a, b] = plan.hand.phi_deg.map((angle) => `${Number(angle.toPrecision(4))}°`);
   return html("header", {},

@@ -115,7 +115,7 @@ def roomiest(cage: Cage, seed: int) -> FloatArray:
     rows = _drawn(cage, "guaranteed", _ROOMY, rng)
     fingers = cage.hand.fingers(rows).reshape(-1, 2)
     depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
-    first = np.inf if cage.sigma_first is None else cage.sigma_first
+    first = np.inf if cage.sigma_guaranteed is None else cage.sigma_guaranteed
     room = np.minimum(-depth.max(axis=1), first - rows[:, 3])
     return np.array(rows[int(np.argmax(room))])
 
