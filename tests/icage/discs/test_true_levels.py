@@ -21,7 +21,9 @@ from icage.discs.true_levels import true_levels
 from icage.errors import GraspError
 from icage.hand import HandShape
 from icage.outline import Outline
+from icage.placement_class import PlacementClass
 from icage.planner import plan
+from icage.sampling import draw_starts
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.polygons import FAMILIES, rotated
 from tests.oracles.statics import is_strict_minimum
@@ -248,3 +250,26 @@ def test_the_levels_of_one_candidate() -> None:
     assert [found.sigma_0, found.sigma_first, found.sigma_max] == pytest.approx(
         levels(whole), rel=EXACT
     )
+
+
+def test_what_the_polygon_joins_too_early_is_not_the_targets() -> None:
+    """Two punctures of the polygon are one on the true curve; behind both is a smaller hand."""
+    target = random_target(np.random.default_rng(3), "spiral", 0.04)
+    assert target is not None
+    cage = plan(Outline(target.vertices), target.contacts, target.radius)
+    assert cage.sigma_first == cage.sigma_max
+    work = cage.work
+    assert work is not None
+    assert work.polygon_first is not None
+    assert work.polygon_first < cage.sigma_first * (1.0 - 1e-5)
+    starts = draw_starts(cage, "guaranteed", 100, np.random.default_rng(0)).placements
+    assert starts[:, 3].min() >= cage.sigma_0 * (1.0 - 1e-9)
+    # the hand of the other basin that was once called target
+    other = np.array(
+        [[0.5689344908572009, -0.04864633416535902], [0.15231566002154015, -0.2053903134955949]]
+    )
+    side = other[1] - other[0]
+    row = [*other[0], np.arctan2(side[1], side[0]), np.hypot(*side)]
+    assert cage.query(np.array([row])).verdict[0] != PlacementClass.TARGET
+    for region in cage.regions("sigma_first"):
+        assert region.area < 1e-4 * cage.outline.diameter**2
