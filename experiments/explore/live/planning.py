@@ -74,6 +74,7 @@ def levels_document(cage: Cage) -> dict[str, Any]:
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
+        "shelf": None if cage.shelf is None else cage.shelf.sigma,
         "grasps": len(cage.grasps),
         "warnings": cage.warnings,
     }

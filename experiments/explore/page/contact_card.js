@@ -67,7 +67,7 @@ export function contactCard(live, take) {
   }
 
   function levelRows(levels) {
-    const known = levels ? [levels.sigma_0, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
+    const known = levels ? [levels.sigma_0, levels.shelf, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
     const length = lengthWriter(data.diameter, known);
     const row = (below, value, words) => html("div", {}, html("dt", {}, subscripted("σ", below)),
       html("dd", {}, value === undefined ? html("span", { class: "pending" }, "…")
@@ -75,10 +75,16 @@ export function contactCard(live, take) {
           : html("span", {}, html("b", {}, `${length(value)} ${data.unit}`), ...(below === "0" ? []
             : [` = ${ratio(value / levels.sigma_0)} `, subscripted("σ", "0")]))),
       html("dd", { class: "note" }, value === null ? words.replace("below it", "at any size") : words));
-    const one = levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
+    const shelf = levels?.shelf ?? null;
+    const one = shelf === null && levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
     if (one) {
       return [row("0", levels.sigma_0, "at the grasp"), row("max", levels.sigma_max,
         "below it the object cannot leave, and closing ends in this grasp")];
+    }
+    if (shelf !== null) {
+      return [row("0", levels.sigma_0, "at the grasp"),
+        row("shelf", shelf, "below it closing ends in this grasp; from it on it may stop on parallel edges"),
+        row("max", levels.sigma_max, "below it the object cannot leave")];
     }
     return [row("0", levels?.sigma_0, "at the grasp"),
       row("first", levels?.sigma_first, "below it closing ends in this grasp"),
