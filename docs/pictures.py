@@ -46,22 +46,21 @@ from icage.outline import Outline
 from icage.planner import plan
 
 FIGURES: Final = ROOT / "docs/figures"
+ON_SHELF: Final = "docs/drawings/parallel_hook_on_shelf.json"
 HOOK: Final = "docs/drawings/hook.svg"
-PARALLEL: Final = "docs/drawings/parallel_hook.svg"
 L: Final = "models/cases/L_best.json"
 
 GRASPS: Final = {
     "HOOK/1.json": f"grasps {HOOK} --finger-radius 3 --top 3 --cases HOOK",
-    "SHELF/1.json": f"grasps {PARALLEL} --finger-radius 3 --top 1 --cases SHELF",
 }
-"""Searches whose case files the commands below take; HOOK and SHELF are folders."""
+"""Searches whose case files the commands below take; HOOK is a folder."""
 
 COMMANDS: Final = {
     "hook_outline": f"outline {HOOK} --figure FILE",
     "hook_grasps": f"grasps {HOOK} --finger-radius 3 --top 3 --figure FILE",
     "hook_cage": "plan HOOK/1.json --figure FILE",
     "hook_place": "place HOOK/1.json --opening-error --figure FILE",
-    "shelf": "plan SHELF/1.json --friction 0.0001 --friction-figure FILE",
+    "shelf": f"plan {ON_SHELF} --friction 0.0001 --friction-figure FILE",
     "friction_pliers": "plan pliers --friction 0.1,0.2 --friction-figure FILE",
     "cage_rest": "plan pliers/4_with_rest --figure FILE",
     "place_pliers": "place pliers --opening-error --figure FILE",
@@ -216,7 +215,7 @@ def main(names: list[str]) -> None:
     """Draw these, or all of them."""
     wanted = names or [*COMMANDS, *PAPER_FIGURES, *DRAWN]
     with tempfile.TemporaryDirectory() as place:
-        folders = {name: Path(place) / name for name in ("HOOK", "SHELF")}
+        folders = {name: Path(place) / name for name in ("HOOK",)}
         for made, words in GRASPS.items():
             needed = any(made in COMMANDS.get(name, "") for name in wanted)
             if needed:

@@ -6,9 +6,9 @@ placement; what is shown moves through free space step by step, too.
 
 from __future__ import annotations
 
+from importlib.metadata import version
 from typing import Any, Final
 
-import mujoco
 import numpy as np
 
 from experiments.explore.live.thing import Thing
@@ -107,7 +107,7 @@ def closing_document(
         "friction": config.friction,
         "time_step": config.time_step,
         "simulated": float(film.time[-1]),
-        "engine": f"MuJoCo {mujoco.__version__}",
+        "engine": f"MuJoCo {version('mujoco')}",
         "time": time,
         "placements": rows,
     }

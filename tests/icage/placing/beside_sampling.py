@@ -75,7 +75,7 @@ def drawn(seed: int, radius: float = 0.0) -> Cage:
 def compared(cage: Cage, seed: int, mu: float = 0.0) -> Compared:
     """Free to open, at a known opening or with an error of it, as the seed has it."""
     rng = np.random.default_rng(seed)
-    level = cage.sigma_first if mu == 0.0 else cage.friction(mu).sigma_first
+    level = cage.sigma_guaranteed if mu == 0.0 else cage.friction(mu).sigma_first
     top = cage.sigma_largest if level is None else level
     assert top is not None
     kind = KINDS[seed % len(KINDS)]
