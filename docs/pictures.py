@@ -36,7 +36,7 @@ from experiments.figures.drawing.palette import (
     tint,
 )
 from experiments.figures.drawing.shapes import as_path, tidied
-from experiments.figures.plan import FIGURE_SETTINGS
+from experiments.figures.drawing.written import FIGURE_SETTINGS
 from icage.cage import Cage
 from icage.cells.regions import caging_regions
 from icage.discs.offsets import offsets
