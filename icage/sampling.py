@@ -90,10 +90,10 @@ def safe_level(sigma: float | None, sigma_0: float) -> float:
 
 def has_rest(cage: Cage) -> bool:
     """Whether the cage holds placements outside the guaranteed set below safe_level(sigma_max)."""
-    if cage.sigma_first is None or cage.status == "not_a_cage":
+    first = cage.sigma_guaranteed
+    if first is None or cage.status == "not_a_cage":
         return False
     top = safe_level(cage.sigma_max, cage.sigma_0)
-    first = cage.sigma_guaranteed or cage.sigma_first
     return first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
 
 

@@ -83,16 +83,6 @@ def free_port() -> int:
         return found.getsockname()[1]
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("studies")
-
-
-@pytest.fixture
-def study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Studied:
-    return Studied(tmp_path / "out", capsys)
-
-
 @pytest.fixture
 def after(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[], Any]], None]:
     """Has something happen when so many shards are kept."""

@@ -19,18 +19,6 @@ from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case
 from tests.experiments.study.studies import TRIALS, Studied, left_alone, no_trials, t_file
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """For studies that are left alone, each run once."""
-    return tmp_path_factory.mktemp("studies")
-
-
-@pytest.fixture
-def study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Studied:
-    return Studied(tmp_path / "out", capsys)
-
-
 _FAST = {("1", "50"), ("2", "7"), ("2", "1000")}
 _ALL = itertools.product(("1", "2"), ("7", "50", "1000"))
 WAYS = pytest.mark.parametrize(
