@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.friction.kernels.disc_features import ARC
-from icage.friction.kernels.polygon import clip, finger_row
+from icage.friction.kernels.polygon import finger_row, keep, keep_near, put_hands_of_two
 from icage.kernels.compiled import compiled
 
 OUTSIDE = 3
@@ -89,28 +89,13 @@ def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thi
     for k in range(count):
         place_of(contacts, chosen[k], state[finger[k]], place[k])
     i, j = finger[0], finger[1]
-    side_x = z[j, 0] - z[i, 0]
-    side_y = z[j, 1] - z[i, 1]
-    square = side_x * side_x + side_y * side_y
-    for k in range(4):
-        s = 1.0 if k == 1 or k == 2 else 0.0
-        u = 1.0 if k >= 2 else 0.0
-        x = place[0, 0] + s * place[0, 2]
-        y = place[0, 1] + s * place[0, 3]
-        gap_x = place[1, 0] + u * place[1, 2] - x
-        gap_y = place[1, 1] + u * place[1, 3] - y
-        w_x = (gap_x * side_x + gap_y * side_y) / square
-        w_y = (gap_y * side_x - gap_x * side_y) / square
-        polygon[k, 0] = x - (w_x * z[i, 0] - w_y * z[i, 1])
-        polygon[k, 1] = y - (w_x * z[i, 1] + w_y * z[i, 0])
-        polygon[k, 2] = w_x
-        polygon[k, 3] = w_y
+    put_hands_of_two(place[0], place[1], z[i], z[j], polygon)
     n = 4
     row = room.row
     loose = thick + slack.shift
     for k in range(2, count):
         own = _ON * thick + slack.shift + sagitta(contacts, chosen[k], state[finger[k]])
-        n = _on_feature(place[k], z[finger[k]], own, row, polygon, n, spare)
+        n = keep_near(place[k], z[finger[k]], own, row, polygon, n, spare)
         if n == 0:
             return 0
     for f in range(len(z)):
@@ -121,7 +106,7 @@ def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thi
             n_y = pieces.normal_y[slot]
             finger_row(row, n_x, n_y, z[f, 0], z[f, 1])
             row[4] = loose - n_x * pieces.x[v] - n_y * pieces.y[v]
-            n = _keep(polygon, n, row, spare)
+            n = keep(polygon, n, row, spare)
             if n == 0:
                 return 0
         for k in range(OUTSIDE):
@@ -129,27 +114,6 @@ def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thi
                 n = _held_off(z[f], contacts, state[f], k, loose, row, polygon, n, spare)
                 if n == 0:
                     return 0
-    return n
-
-
-@compiled
-def _on_feature(place, z, loose, row, polygon, n, spare):
-    """Keep the hands whose finger at z is within ``loose`` of an edge, a chord or a corner."""
-    length = np.hypot(place[2], place[3])
-    t_x = 1.0
-    t_y = 0.0
-    if length > 0.0:
-        t_x = place[2] / length
-        t_y = place[3] / length
-    for k in range(4):
-        # along the edge, back from its end, and to both sides of it
-        n_x = t_x if k == 0 else -t_x if k == 1 else -t_y if k == 2 else t_y
-        n_y = t_y if k == 0 else -t_y if k == 1 else t_x if k == 2 else -t_x
-        finger_row(row, n_x, n_y, z[0], z[1])
-        row[4] = loose - n_x * place[0] - n_y * place[1]
-        if k == 1:
-            row[4] += length
-        n = _keep(polygon, n, row, spare)
     return n
 
 
@@ -170,13 +134,5 @@ def _held_off(z, contacts, state, k, loose, row, polygon, n, spare):
         row[4] = loose - n_x * x - n_y * y
         if turn == 0.0:
             row[4] -= contacts.radius * math.cos(half)
-        n = _keep(polygon, n, row, spare)
+        n = keep(polygon, n, row, spare)
     return n
-
-
-@compiled
-def _keep(polygon, n, row, spare):
-    """Clip a polygon where it is."""
-    m = clip(polygon, n, row, spare)
-    polygon[:m] = spare[:m]
-    return m

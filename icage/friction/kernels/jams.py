@@ -16,7 +16,7 @@ import numpy as np
 
 from icage.friction.kernels.balance import EVERYTHING, NOTHING, balancing
 from icage.friction.kernels.goal import cheapest
-from icage.friction.kernels.polygon import clip, finger_row
+from icage.friction.kernels.polygon import finger_row, keep, keep_near, put_hands_of_two
 from icage.kernels.compiled import compiled
 
 _ROOM = 96
@@ -122,31 +122,14 @@ def _hands_on(pieces, z, cell, finger, chosen, count, contacts, thick, polygon, 
     """Corners of the hands with these fingers on these features and the others in their pieces."""
     i, j = finger[0], finger[1]
     p, q = contacts.place[chosen[0]], contacts.place[chosen[1]]
-    side_x = z[j, 0] - z[i, 0]
-    side_y = z[j, 1] - z[i, 1]
-    square = side_x * side_x + side_y * side_y
-    for k in range(4):
-        s = 1.0 if k == 1 or k == 2 else 0.0
-        u = 1.0 if k >= 2 else 0.0
-        x = p[0] + s * p[2]
-        y = p[1] + s * p[3]
-        gap_x = q[0] + u * q[2] - x
-        gap_y = q[1] + u * q[3] - y
-        w_x = (gap_x * side_x + gap_y * side_y) / square
-        w_y = (gap_y * side_x - gap_x * side_y) / square
-        polygon[k, 0] = x - (w_x * z[i, 0] - w_y * z[i, 1])
-        polygon[k, 1] = y - (w_x * z[i, 1] + w_y * z[i, 0])
-        polygon[k, 2] = w_x
-        polygon[k, 3] = w_y
+    put_hands_of_two(p, q, z[i], z[j], polygon)
     n = 4
     row = np.empty(5)
     touching = 0
     for f in range(len(z)):
         if touching < count and finger[touching] == f:
             if touching >= 2:
-                n = _on_feature(
-                    contacts.place[chosen[touching]], z[f], thick, row, polygon, n, spare
-                )
+                n = keep_near(contacts.place[chosen[touching]], z[f], thick, row, polygon, n, spare)
             touching += 1
         else:
             piece = cell[f]
@@ -156,30 +139,9 @@ def _hands_on(pieces, z, cell, finger, chosen, count, contacts, thick, polygon, 
                 n_y = pieces.normal_y[slot]
                 finger_row(row, n_x, n_y, z[f, 0], z[f, 1])
                 row[4] = thick - n_x * pieces.x[v] - n_y * pieces.y[v]
-                n = _keep(polygon, n, row, spare)
+                n = keep(polygon, n, row, spare)
         if n == 0:
             return 0
-    return n
-
-
-@compiled
-def _on_feature(place, z, thick, row, polygon, n, spare):
-    """Keep the hands whose finger at z is within ``thick`` of an edge or a vertex."""
-    length = np.hypot(place[2], place[3])
-    t_x = 1.0
-    t_y = 0.0
-    if length > 0.0:
-        t_x = place[2] / length
-        t_y = place[3] / length
-    for k in range(4):
-        # along the edge, back from its end, and to both sides of it
-        n_x = t_x if k == 0 else -t_x if k == 1 else -t_y if k == 2 else t_y
-        n_y = t_y if k == 0 else -t_y if k == 1 else t_x if k == 2 else -t_x
-        finger_row(row, n_x, n_y, z[0], z[1])
-        row[4] = thick - n_x * place[0] - n_y * place[1]
-        if k == 1:
-            row[4] += length
-        n = _keep(polygon, n, row, spare)
     return n
 
 
@@ -192,13 +154,5 @@ def _within(polygon, n, sector, thick, spare):
     for turn in (0.5 * math.pi - sector[1], sector[1] - 0.5 * math.pi, 0.0):
         row[2] = math.cos(sector[0] + turn)
         row[3] = math.sin(sector[0] + turn)
-        n = _keep(polygon, n, row, spare)
+        n = keep(polygon, n, row, spare)
     return n
-
-
-@compiled
-def _keep(polygon, n, row, spare):
-    """Clip a polygon where it is."""
-    m = clip(polygon, n, row, spare)
-    polygon[:m] = spare[:m]
-    return m

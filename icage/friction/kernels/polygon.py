@@ -69,3 +69,56 @@ def least(corners, n, point):
             for c in range(4):
                 point[c] = corners[a, c] + t * (corners[b, c] - corners[a, c])
     return best
+
+
+@compiled
+def keep(polygon, n, row, spare):
+    """Clip a polygon where it is."""
+    m = clip(polygon, n, row, spare)
+    polygon[:m] = spare[:m]
+    return m
+
+
+@compiled
+def keep_near(place, z, loose, row, polygon, n, spare):
+    """Keep the hands whose finger at z is within ``loose`` of a point and the side from it.
+
+    ``place`` (4,) is the point and the side, which may have no length.
+    """
+    length = np.hypot(place[2], place[3])
+    t_x = 1.0
+    t_y = 0.0
+    if length > 0.0:
+        t_x = place[2] / length
+        t_y = place[3] / length
+    for k in range(4):
+        # along the edge, back from its end, and to both sides of it
+        n_x = t_x if k == 0 else -t_x if k == 1 else -t_y if k == 2 else t_y
+        n_y = t_y if k == 0 else -t_y if k == 1 else t_x if k == 2 else -t_x
+        finger_row(row, n_x, n_y, z[0], z[1])
+        row[4] = loose - n_x * place[0] - n_y * place[1]
+        if k == 1:
+            row[4] += length
+        n = keep(polygon, n, row, spare)
+    return n
+
+
+@compiled
+def put_hands_of_two(p, q, z_i, z_j, polygon):
+    """Fill in the four corners of the hands with a finger on each of two sides, p and q (4,)."""
+    side_x = z_j[0] - z_i[0]
+    side_y = z_j[1] - z_i[1]
+    square = side_x * side_x + side_y * side_y
+    for k in range(4):
+        s = 1.0 if k == 1 or k == 2 else 0.0
+        u = 1.0 if k >= 2 else 0.0
+        x = p[0] + s * p[2]
+        y = p[1] + s * p[3]
+        gap_x = q[0] + u * q[2] - x
+        gap_y = q[1] + u * q[3] - y
+        w_x = (gap_x * side_x + gap_y * side_y) / square
+        w_y = (gap_y * side_x - gap_x * side_y) / square
+        polygon[k, 0] = x - (w_x * z_i[0] - w_y * z_i[1])
+        polygon[k, 1] = y - (w_x * z_i[1] + w_y * z_i[0])
+        polygon[k, 2] = w_x
+        polygon[k, 3] = w_y
