@@ -1,8 +1,7 @@
-"""A real browser: the distribution's Chromium, driven by Playwright where both are there."""
+"""The page of a case as a file, opened in a real browser where there is one."""
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,26 +12,7 @@ from experiments.explore.run import write_page
 from icage.case import Case
 from icage.formats.load import load
 from tests.experiments.explore.placements import source_of
-
-NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
-
-Opened = Callable[..., Any]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """A browser without a window."""
-    api = pytest.importorskip(
-        "playwright.sync_api", reason="the page is tested in a browser: pip install icage[browser]"
-    )
-    program = next(filter(None, map(shutil.which, NAMES)), None)
-    if program is None:
-        pytest.skip(f"no browser here: none of {', '.join(NAMES)} is on the path")
-    with api.sync_playwright() as playwright:
-        # the sandbox of a browser needs what containers have not
-        chromium = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
+from tests.in_browser import Opened, browser, watched  # noqa: F401
 
 
 @pytest.fixture(scope="module")
@@ -53,27 +33,16 @@ def page_file(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def opened(browser: Any, page_file: Callable[..., Path]) -> Iterator[Opened]:
+def opened(browser: Any, page_file: Callable[..., Path]) -> Iterator[Opened]:  # noqa: F811
     """Opens the page of a case; fails if it complains or asks any host for anything."""
-    complaints: list[str] = []
-    contexts: list[Any] = []
+    with watched(browser) as open_page:
 
-    def open_page(case: str | Case, *mus: float, wide: int = 1280, tall: int = 900, **more: Any):
-        context = browser.new_context(viewport={"width": wide, "height": tall}, **more)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        address = page_file(case, *mus).as_uri()
-        page.on(
-            "request",
-            lambda request: request.url == address or complaints.append(f"asks {request.url}"),
-        )
-        page.goto(address)
-        page.wait_for_selector(".hand polygon[points]")
-        return page
+        def open_case(
+            case: str | Case, *mus: float, wide: int = 1280, tall: int = 900, **more: Any
+        ) -> Any:
+            address = page_file(case, *mus).as_uri()
+            page = open_page(address, address.__eq__, wide, tall, **more)
+            page.wait_for_selector(".hand polygon[points]")
+            return page
 
-    yield open_page
-    for context in contexts:
-        context.close()
-    assert complaints == []
+        yield open_case

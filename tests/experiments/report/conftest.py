@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,8 @@ import pytest
 
 from experiments.cli import main
 from experiments.io.parquet_files import read_table, words_of, write_table
-from tests.experiments.explore.conftest import browser  # noqa: F401
 from tests.experiments.small import t_case, write_case
+from tests.in_browser import Opened, browser, watched  # noqa: F401
 
 DATA = Path(__file__).parent / "data"
 JAMS = Path(__file__).parents[3] / "docs" / "jams.json"
@@ -83,34 +83,14 @@ def pages(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Pat
     return found
 
 
-Opened = Callable[..., Any]
-
-
 @pytest.fixture
 def opened(browser: Any) -> Iterator[Opened]:  # noqa: F811
     """Opens a page from the disk; fails if it complains or asks any host for anything."""
-    complaints: list[str] = []
-    contexts: list[Any] = []
+    with watched(browser) as open_page:
 
-    def open_page(path: Path, wide: int = 1280, tall: int = 900, **more: Any) -> Any:
-        context = browser.new_context(viewport={"width": wide, "height": tall}, **more)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        address = path.as_uri()
-        page.on(
-            "request",
-            lambda request: (
-                request.url == address
-                or request.url.startswith("data:")
-                or complaints.append(f"asks {request.url}")
-            ),
-        )
-        page.goto(address)
-        return page
+        def open_file(path: Path, wide: int = 1280, tall: int = 900, **more: Any) -> Any:
+            address = path.as_uri()
+            own = lambda url: url == address or url.startswith("data:")  # noqa: E731
+            return open_page(address, own, wide, tall, **more)
 
-    yield open_page
-    for context in contexts:
-        context.close()
-    assert complaints == []
+        yield open_file

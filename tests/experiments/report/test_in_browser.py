@@ -4,37 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from tests.experiments.report.conftest import KINDS, Opened, page_of
+from tests.experiments.report.conftest import KINDS, page_of
 from tests.experiments.report.test_page import HOSTILE
-
-CONTRAST = """() => {
-  const parse = color => color.match(/[\\d.]+/g).map(Number);
-  const part = v => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
-  const light = ([r, g, b]) => 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
-  const behind = element => {
-    for (let at = element; at; at = at.parentElement) {
-      const color = parse(getComputedStyle(at).backgroundColor);
-      if (color.length === 3 || color[3] === 1) return color;
-    }
-    return [255, 255, 255];
-  };
-  const found = [];
-  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  while (walk.nextNode()) {
-    const element = walk.currentNode.parentElement;
-    if (!walk.currentNode.textContent.trim() || !element.getClientRects().length) continue;
-    if (element.closest('script, style')) continue;
-    const style = getComputedStyle(element);
-    const ink = element instanceof SVGElement ? style.fill : style.color;
-    const [a, b] = [light(parse(ink)), light(behind(element))];
-    found.push([(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), walk.currentNode.textContent]);
-  }
-  return found;
-}"""
+from tests.in_browser import Opened, legible, reached_by_tab
 
 COLUMN = """([table, column]) =>
   [...document.querySelectorAll('table')[table].tBodies[0].rows].filter(row => !row.hidden)
@@ -68,10 +43,7 @@ def test_it_fits_wide_and_narrow_screens(
 def test_text_has_the_contrast_that_is_asked_for(
     kind: str, scheme: str, pages: dict[str, Path], opened: Opened
 ) -> None:
-    found = opened(pages[kind], color_scheme=scheme).evaluate(CONTRAST)
-    assert len(found) > 40
-    for ratio, text in found:
-        assert ratio >= 4.5, (ratio, text)
+    legible(opened(pages[kind], color_scheme=scheme), "body", more_than=40)
 
 
 def test_a_table_is_sorted_by_a_press(pages: dict[str, Path], opened: Opened) -> None:
@@ -119,20 +91,7 @@ def test_rows_are_filtered_by_words(pages: dict[str, Path], opened: Opened) -> N
 def test_all_of_it_by_keys(pages: dict[str, Path], opened: Opened) -> None:
     page = opened(pages["escape.json"])
     wanted = page.evaluate(f"document.querySelectorAll('{TABS}').length")
-    reached: list[Any] = []
-    for _ in range(wanted):
-        page.keyboard.press("Tab")
-        reached.append(
-            page.evaluate(
-                """() => { const one = document.activeElement; const style = getComputedStyle(one);
-                     one.dataset.reached = 1;
-                     return [one.tagName, style.outlineStyle, parseFloat(style.outlineWidth)]; }"""
-            )
-        )
-    assert page.locator("[data-reached]").count() == wanted
-    for tag, style, width in reached:
-        assert style != "none", tag
-        assert width >= 2.0, tag
+    reached_by_tab(page, wanted)
     head = page.locator("thead th").first
     head.locator("button").focus()
     page.keyboard.press("Enter")
@@ -152,7 +111,7 @@ def test_on_paper_no_table_is_cut(kind: str, pages: dict[str, Path], opened: Ope
     )
     assert max(over) <= 0.5
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    assert min(ratio for ratio, _ in page.evaluate(CONTRAST)) >= 4.5
+    legible(page, "body")
     assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
 
 
