@@ -31,7 +31,11 @@ def started(*arguments: str) -> Generator[tuple[subprocess.Popen[str], str]]:
     """The command in a process group of its own, and the address that it prints."""
     command = [sys.executable, "-c", ASK_FOR, "explore", *arguments, "--no-open"]
     pipe = subprocess.PIPE
-    process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        command, stdout=pipe, stderr=pipe, text=True, start_new_session=True,
+        # a shell has what runs behind it ignore Ctrl-C
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
     try:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
