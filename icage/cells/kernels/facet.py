@@ -26,8 +26,11 @@ CLEARANCE = 2e-14
 """[diameter] Touching is free: a facet that is empty by no more than this counts as open, so that
 the rounding of a turned drawing cannot close a passage of no width."""
 
-G_X, G_Y, ALONG, BOUND, ERROR = range(5)
-"""Columns of the half planes g . w + h tau >= c +- error: g, h, c, error."""
+G_X, G_Y, ALONG, BOUND, ERROR, ROUNDING = range(6)
+"""Columns of the half planes g . w + h tau >= c +- error: g, h, c, error, and how much of the error
+is rounding; the rest is ``CLEARANCE``, which decides whether there is a w but moves none."""
+
+BASE_COLUMNS = 6
 
 
 class Facet(NamedTuple):
@@ -114,7 +117,8 @@ def rows_of_others(pieces, z, facet, segment, base):
             base[count, G_Y] = ux * ny - uy * nx
             base[count, ALONG] = nx * segment.e_x + ny * segment.e_y
             base[count, BOUND] = nx * dx + ny * dy
-            base[count, ERROR] = CLEARANCE * scale + 4.0 * EPS * (abs(dx) + abs(dy) + scale * size)
+            rounding = 8.0 * EPS * (abs(dx) + abs(dy) + scale * size + segment.length)
+            base[count, ERROR], base[count, ROUNDING] = CLEARANCE * scale + rounding, rounding
             count += 1
     return count
 
@@ -153,13 +157,13 @@ def finger_on_segment(pieces, z, facet, wx, wy, base):
 def ends_on_facet(pieces, z, cell, finger, slot, wx, wy):
     """Where a finger may be along the edge ``slot`` of its piece for a given w."""
     facet = facet_of(pieces, cell, finger, slot)
-    return finger_on_segment(pieces, z, facet, wx, wy, np.empty((MAX_BASE, 5)))
+    return finger_on_segment(pieces, z, facet, wx, wy, np.empty((MAX_BASE, BASE_COLUMNS)))
 
 
 @compiled
 def middles_on_facets(pieces, z, cells, fingers, slots, w):
     """Hands (k, 4) = d_x, d_y, w_x, w_y in the middle of where facets of cells hold a given w."""
-    base = np.empty((MAX_BASE, 5))
+    base = np.empty((MAX_BASE, BASE_COLUMNS))
     hands = np.empty((len(cells), 4))
     for k in range(len(cells)):
         finger = fingers[k]

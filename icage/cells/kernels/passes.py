@@ -16,9 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from icage.cells.kernels.boxes import out_of_reach
 from icage.cells.kernels.careful import pass_careful
 from icage.cells.kernels.facet import (
     ALONG,
+    BASE_COLUMNS,
     BOUND,
     CLEARANCE,
     EPS,
@@ -27,6 +29,7 @@ from icage.cells.kernels.facet import (
     G_Y,
     MAX_BASE,
     MAX_ROWS,
+    ROUNDING,
     rows_of_others,
     segment_of,
 )
@@ -40,7 +43,7 @@ _NO_ROW = 1e-11
 """[1] A row whose g is this small against its weights says nothing about w: only rounding is left
 of it, and dividing by it would make an error of 1e-5 of that."""
 
-_ROW_C, _ROW_ERROR = 2, 3
+_ROW_C, _ROW_ERROR, _ROW_ROUNDING = 2, 3, 4
 """Columns after g of the half planes g . w >= c +- error of ``min_norm``."""
 
 
@@ -70,7 +73,7 @@ class _Stored(NamedTuple):
 @compiled
 def new_room():
     """Memory for ``pass_value``."""
-    return Room(np.empty((MAX_BASE, 5)), np.empty((MAX_ROWS, 4)), np.zeros(2, np.int64))
+    return Room(np.empty((MAX_BASE, BASE_COLUMNS)), np.empty((MAX_ROWS, 5)), np.zeros(2, np.int64))
 
 
 @compiled_borrowing
@@ -81,19 +84,21 @@ def pass_fast(pieces, z, facet, cap, worst, room):
     n = rows_of_others(pieces, z, facet, segment, base)
     # tau from 0 ...
     base[n, G_X], base[n, G_Y], base[n, ALONG], base[n, BOUND] = 0.0, 0.0, 1.0, 0.0
-    base[n, ERROR] = 0.0
+    base[n, ERROR], base[n, ROUNDING] = 0.0, 0.0
     n += 1
     # ... to the length of the segment
     base[n, G_X], base[n, G_Y], base[n, ALONG], base[n, BOUND] = 0.0, 0.0, -1.0, -segment.length
     base[n, ERROR] = 2.0 * EPS * segment.length
+    base[n, ROUNDING] = base[n, ERROR]
     n += 1
     count = 0
     for a in range(n):
         ha = base[a, ALONG]
         if ha == 0.0:
             count, status = _put(
-                base[a, G_X], base[a, G_Y], base[a, BOUND], base[a, ERROR], 1.0, cap, rows, count
-            )
+                base[a, G_X], base[a, G_Y], base[a, BOUND], base[a, ERROR], base[a, ROUNDING], 1.0,
+                cap, rows, count,
+            )  # fmt: skip
             if status != FOUND:
                 return LeastNorm(status, 0.0, 0.0)
         elif ha > 0.0:
@@ -104,14 +109,15 @@ def pass_fast(pieces, z, facet, cap, worst, room):
                     gy = ha * base[b, G_Y] - hb * base[a, G_Y]
                     c = ha * base[b, BOUND] - hb * base[a, BOUND]
                     err = ha * base[b, ERROR] - hb * base[a, ERROR]
-                    count, status = _put(gx, gy, c, err, ha - hb, cap, rows, count)
+                    rounding = ha * base[b, ROUNDING] - hb * base[a, ROUNDING]
+                    count, status = _put(gx, gy, c, err, rounding, ha - hb, cap, rows, count)
                     if status != FOUND:
                         return LeastNorm(status, 0.0, 0.0)
     return min_norm(rows, count, worst)
 
 
 @compiled_borrowing
-def _put(gx, gy, c, err, weight, cap, rows, count):
+def _put(gx, gy, c, err, rounding, weight, cap, rows, count):
     """Store one row scaled to |g| = 1, unless it holds for every |w| <= cap or for none."""
     norm = math.sqrt(gx * gx + gy * gy)  # lengths near the diameter's: no overflow; hypot is slow
     reach = norm * cap
@@ -128,12 +134,15 @@ def _put(gx, gy, c, err, weight, cap, rows, count):
     rows[count, G_Y] = gy * inv
     rows[count, _ROW_C] = c * inv
     rows[count, _ROW_ERROR] = err * inv
+    rows[count, _ROW_ROUNDING] = rounding * inv
     return _Stored(count + 1, FOUND)
 
 
 @compiled_borrowing
 def pass_value(pieces, z, facet, cap, worst, room):
     """Least sigma on a facet; inf where there is none below ``cap``."""
+    if out_of_reach(pieces, z, facet, cap):
+        return Pass(np.inf, 0.0, 0.0)
     room.tally[0] += 1
     found = pass_fast(pieces, z, facet, cap, worst, room)
     if found.status == UNSURE:

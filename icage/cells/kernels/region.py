@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.facet import MAX_BASE, facet_of, finger_on_segment
+from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, facet_of, finger_on_segment
 from icage.cells.kernels.sandwich import CORNERS, sandwich
 from icage.kernels.compiled import compiled
 
@@ -60,7 +60,7 @@ def least_points(pieces, z, i, cells, wx, wy, standing, slots):
     There w = (wx, wy) and the finger ``standing`` is on the edge ``slots`` of its piece.
     """
     points = np.empty((len(cells), 2))
-    base = np.empty((MAX_BASE, 5))
+    base = np.empty((MAX_BASE, BASE_COLUMNS))
     for row in range(len(cells)):
         a = standing[row]
         facet = facet_of(pieces, cells[row], a, slots[row])

@@ -172,7 +172,7 @@ def explore(pieces, z, start, floor, cap, worst, stop_above, node_limit, enough)
     n_records = 0
     n_heap = 0
     level = floor
-    tie = TIE * pieces.scale
+    tie = max(TIE * pieces.scale, worst)
     outcome = CLOSED_IN
     standing = -1
     cell = np.empty(3, np.int64)

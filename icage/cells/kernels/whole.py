@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.facet import MAX_BASE, facet_of, finger_on_segment
+from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, facet_of, finger_on_segment
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.search import birth
 from icage.kernels.compiled import compiled
@@ -184,7 +184,7 @@ def least_hands(pieces, z, cells, fingers, slots, cap, worst):
     In the middle of what is level in a cell.
     """
     room = new_room()
-    base = np.empty((MAX_BASE, 5))
+    base = np.empty((MAX_BASE, BASE_COLUMNS))
     hands = np.empty((len(cells), 4))
     cell = np.empty(len(z), np.int64)
     for k in range(len(cells)):

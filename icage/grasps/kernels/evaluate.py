@@ -41,6 +41,10 @@ from icage.tolerance import (
 
 GAVE_UP, _, _, MET = Ending
 
+_PASS_ERROR = 10.0 * PASS_ERROR
+"""[diameter] How good the passes of a search from a candidate are: still ten times better than the
+depth below which a minimum does not count. ``plan`` computes those of the grasps that are shown."""
+
 
 class Verdict(IntEnum):
     """What a candidate is."""
@@ -138,7 +142,7 @@ def evaluate(pieces, origin, ring, x, y, limits, sought):
     z[2, 0], z[2, 1] = (ux * wx + uy * wy) / norm, (uy * wx - ux * wy) / norm
     shortest = min(1.0, np.hypot(z[2, 0], z[2, 1]), np.hypot(z[2, 0] - 1.0, z[2, 1]))
     cap = pieces.diameter / shortest
-    worst = PASS_ERROR * pieces.diameter
+    worst = _PASS_ERROR * pieces.diameter
     wanted = Hand(x[0] - origin[0], y[0] - origin[1], wx, wy)
     held = nearest_minimum(pieces, z, wanted, TARGET_SHIFT, TARGET_TURN, cap, worst, MOST_CELLS)
     if held.row < 0 or held.plateau.long or held.total > MOST_CELLS:
