@@ -218,15 +218,16 @@ class Box:
         # A hand smaller than the floor would have to be kept more than once: there is none in the
         # set, or the floor is wrong.
         too_small = np.flatnonzero(sigma < self.floor)
-        if len(too_small) and _belongs(cage, which, _placements(d, w, too_small)).any():
-            raise GeometryError(f"a placement of the {which} set below its least sigma")
         keep = (kept * sigma < self.floor) & (sigma >= self.floor) & (sigma < self.top)
         places = np.flatnonzero(keep)
         rows = _placements(d, w, places)
         at = cage.hand.fingers(rows)[:, 3 - sum(self.pair)]
         near = shapely.contains_xy(self.third, at[:, 0], at[:, 1])
         rows, places = rows[near], places[near]
-        inside = _belongs(cage, which, rows)
+        asked = np.concatenate([rows, _placements(d, w, too_small)])  # one question for both
+        inside, wrong = np.split(_belongs(cage, which, asked), [len(rows)])
+        if wrong.any():
+            raise GeometryError(f"a placement of the {which} set below its least sigma")
         return rows[inside], places[inside]
 
     def _hands(

@@ -21,6 +21,11 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What is marked ``first`` comes first; all else stays in its order."""
+    items.sort(key=lambda item: item.get_closest_marker("first") is None)
+
+
 @pytest.fixture
 def square() -> dict[str, Any]:
     """A case on the unit square that every parser accepts, as parsed JSON."""

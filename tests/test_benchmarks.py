@@ -53,6 +53,7 @@ def test_what_is_slower_than_its_baseline_is_counted():
 
 
 @pytest.mark.slow
+@pytest.mark.first
 def test_peers_are_right_where_the_answer_is_known():
     done = run("-m", "benchmarks.peers", "--check")
     assert done.returncode == 0, done.stdout + done.stderr

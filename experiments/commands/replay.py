@@ -57,12 +57,16 @@ def run(args: argparse.Namespace) -> int:
     """Replay, write, print the table; 1 if anything did not hold."""
     from pathlib import Path
 
+    from icage.kernels import background
+
+    folder = Path(args.out)
+    cases, name = _cases(args)
+    background.start(awaited=True)  # while this process loads the engine
+
     from experiments.io.held_folder import held_folder
     from experiments.io.options import check_folder
     from experiments.replay.files import ALL
 
-    folder = Path(args.out)
-    cases, name = _cases(args)
     check_folder("--out", folder, ALL, [file for case in cases for file in case.sources])
     with held_folder(folder, "replay"):
         return _run(args, folder, cases, name)
@@ -107,7 +111,6 @@ def _run(args: argparse.Namespace, folder: Path, cases: tuple[Case, ...], name: 
         from sim.camera.renderer import check_graphics
 
         check_graphics()
-    background.start(awaited=True)
     found = chosen(cases[0], args, count) if searching else Chosen(cases)
     earlier = earlier_case_files(folder, NUMBERED, sources)
     own = [NUMBERED.format(k) for k in range(1, len(found.cases) + 1)] if searching else []
@@ -123,6 +126,7 @@ def _run(args: argparse.Namespace, folder: Path, cases: tuple[Case, ...], name: 
             if args.video:
                 from experiments.replay.video import film
 
+                background.no_longer_awaited()  # a film asks for no kernel that is not there
                 film(done, name, regions, staging / VIDEO, report)
     except SamplingError as error:
         print(f"icage: replay failed: {error}", file=sys.stderr)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.hand_view import HandView, window_on
 from experiments.replay.film_page import MAIN
-from experiments.replay.video import Photographs
+from experiments.replay.photographs import Photographs
 from experiments.video.subject import Subject
 from icage.arrays import FloatArray
 from sim.camera.stage import View
@@ -31,7 +31,8 @@ def engine_view(
     with ExitStack() as stack:
         taken = None
         if subject.camera:
-            taken = Photographs.of(scene, qpos, window, subject.regions, cage, stack, scale)
+            begun = Photographs.begun(scene, qpos, window, subject.regions, cage, stack, scale)
+            taken = begun if begun.taken() else None
 
         def paint(canvas: Canvas, k: int) -> None:
             if taken is None:

@@ -44,6 +44,9 @@ MODULE: Final = "icage.compile_kernels"
 SECONDS: Final = 900
 """[s] After which it is ended, whatever it does."""
 
+LOW_PRIORITY: Final = 15
+"""Niceness for which whoever else is at work hardly notices: a thirtieth of a core."""
+
 _GO_ON: Final = b"go on"
 """What a process that ends well tells the one behind it."""
 
@@ -111,6 +114,14 @@ def abandon() -> None:
     if child is not None and child.stdin is not None:
         with suppress(OSError):
             child.stdin.close()
+
+
+def no_longer_awaited() -> None:
+    """Nobody waits for the other process now, if this one has started it: it gets low priority."""
+    child = _seen.child
+    if child is not None and hasattr(os, "setpriority"):
+        with suppress(OSError):  # it has ended
+            os.setpriority(os.PRIO_PROCESS, child.pid, LOW_PRIORITY)
 
 
 def follow() -> None:

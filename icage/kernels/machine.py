@@ -56,9 +56,7 @@ def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **opti
         dispatcher: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
         _load_without_blas()
-        dispatcher = numba.njit(**options)(function)
-        _dispatchers.append(dispatcher)
-        return dispatcher
+        return _kept(numba.njit(**options)(function))
     # private names of numba's, checked by a test: without them the cache would go stale unseen
     cache = dispatcher._cache
     cache._cache_file = type(cache._cache_file)(
@@ -67,6 +65,25 @@ def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **opti
         source_stamp=kernel_digest(),
     )
     cache.load_overload = _without_what_compiles(cache)
+    return _kept(dispatcher)
+
+
+def _kept(dispatcher: Any) -> Any:
+    """The dispatcher; a call with a number written out is one with any number.
+
+    numba would compile a kernel once more for each number that stands in a call from another one,
+    though nothing is gained: what is called is put into its caller anyway. It was a sixth of the
+    time of all kernels.
+    """
+    asked = dispatcher.get_call_template
+
+    def of_any_number(args: Any, kws: dict[str, Any]) -> Any:
+        return asked(
+            [numba.types.unliteral(one) for one in args],
+            {name: numba.types.unliteral(one) for name, one in kws.items()},
+        )
+
+    dispatcher.get_call_template = of_any_number
     _dispatchers.append(dispatcher)
     return dispatcher
 

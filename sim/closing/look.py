@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.world.hand_in_object import depths, fingers_seen
+from sim.world.hand_in_object import depth_at, fingers_seen
 
 
 class EndingCode(IntEnum):
@@ -86,12 +86,15 @@ class Record(NamedTuple):
     """What is updated, a row each for N closings; ``max_steps``, ``remains`` (N,) are read only.
 
     ``tail`` (N, 5) is the last speed; speed and step at which the present part of the tail began;
-    the rate of the part before and how many in a row had it.
+    the rate of the part before and how many in a row had it. ``apart`` (N, 3, 3) says where each
+    finger stood in the object's axes when its depth was last measured, and how far from there it
+    touches nothing for certain: until it has come so far, there is nothing to measure.
     """
 
     max_steps: IntArray
     remains: FloatArray
     tail: FloatArray
+    apart: FloatArray
     seen: FloatArray
     still: IntArray
     steps: IntArray
@@ -123,6 +126,30 @@ def _fades(
     return speed * bounds.step / rate <= record.remains[i]
 
 
+@njit(cache=True)
+def _measure(
+    i: int,
+    vertices: FloatArray,
+    fingers: FloatArray,
+    radius: float,
+    apart: FloatArray,
+    depth: FloatArray,
+) -> None:  # pragma: no cover - compiled
+    """depth[k] = how deep finger k is; of one that touches nothing, a number below -``TOUCHING``.
+
+    Nothing but that is asked of it, and most fingers are on their way for most of a closing.
+    """
+    for k in range(fingers.shape[0]):
+        x, y = fingers[k, 0], fingers[k, 1]
+        u, v, room = x - apart[i, k, 0], y - apart[i, k, 1], apart[i, k, 2]
+        if room > 0.0 and u * u + v * v < room * room:
+            depth[k] = -2.0 * TOUCHING
+        else:
+            depth[k] = depth_at(vertices, x, y, radius)
+            apart[i, k, 0], apart[i, k, 1] = x, y
+            apart[i, k, 2] = -depth[k] - 2.0 * TOUCHING
+
+
 @njit(cache=True, inline="always")
 def look_at(
     i: int,
@@ -148,7 +175,7 @@ def look_at(
     off = 0.0
     for k in range(3):
         off = max(off, abs(qpos[k] - lengths[k] * sigma))
-    depths(shape.vertices, fingers, shape.radius, depth)
+    _measure(i, shape.vertices, fingers, shape.radius, record.apart, depth)
     deepest = max(depth[0], depth[1], depth[2])
     touches = 0
     for k in range(3):

@@ -60,6 +60,7 @@ class StepCheck:
     _max_steps: IntArray
     _remains: FloatArray
     _tail: FloatArray
+    _apart: FloatArray
     _still: IntArray
     _seen: FloatArray
     told: tuple[Shape, Bounds, Record] = field(init=False, repr=False)
@@ -82,8 +83,8 @@ class StepCheck:
             config.time_step,
         )
         record = Record(
-            self._max_steps, self._remains, self._tail, self._seen, self._still, self.steps,
-            self.ending,
+            self._max_steps, self._remains, self._tail, self._apart, self._seen, self._still,
+            self.steps, self.ending,
         )  # fmt: skip
         object.__setattr__(self, "told", (shape, bounds, record))
 
@@ -115,6 +116,7 @@ class StepCheck:
             _max_steps=np.ceil(scene.config.max_steps * longer).astype(np.int64),
             _remains=np.full(count, rest) if remains is None else remains,
             _tail=np.zeros((count, TAIL_FIELDS)),
+            _apart=np.zeros((count, 3, 3)),
             _still=np.zeros(count, dtype=np.int64),
             _seen=seen,
         )

@@ -49,40 +49,47 @@ def fingers_seen(
 
 
 @njit(cache=True)
+def depth_at(
+    vertices: FloatArray, x: float, y: float, radius: float
+) -> float:  # pragma: no cover - compiled
+    """How deep a disc with its centre at x, y reaches into the polygon; negative: its distance.
+
+    ``vertices`` (n, 2), one unit. Depth = radius - signed distance of the centre from the outline,
+    positive outside.
+    """
+    count = vertices.shape[0]
+    nearest = math.inf
+    inside = False
+    ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
+    for j in range(count):
+        bx, by = vertices[j, 0] - x, vertices[j, 1] - y
+        ex, ey = bx - ax, by - ay
+        along = -(ax * ex + ay * ey)
+        square = ex * ex + ey * ey
+        if along <= 0.0:
+            distance = ax * ax + ay * ay
+        elif along >= square:
+            distance = bx * bx + by * by
+        else:
+            cross = ax * ey - ay * ex
+            distance = cross * cross
+            # most edges are farther than one met before: that needs no division
+            distance = math.inf if distance > _FARTHER * nearest * square else distance / square
+        nearest = min(nearest, distance)
+        if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
+            inside = not inside
+        ax, ay = bx, by
+    signed = math.sqrt(nearest)
+    return radius + signed if inside else radius - signed
+
+
+@njit(cache=True)
 def depths(
     vertices: FloatArray, fingers: FloatArray, radius: float, out: FloatArray
 ) -> None:  # pragma: no cover - compiled
-    """out[k] = how deep disc k reaches into the polygon; negative: its distance from it.
-
-    ``vertices`` (n, 2), ``fingers`` (m, 2) centres, one unit. Depth = radius - signed distance of
-    the centre from the outline, positive outside.
-    """
-    count = vertices.shape[0]
+    """out[k] = ``depth_at`` of disc k, whose centre is fingers[k] (m, 2)."""
     for k in range(fingers.shape[0]):
-        x, y = fingers[k, 0], fingers[k, 1]
-        nearest = math.inf
-        inside = False
-        ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
-        for j in range(count):
-            bx, by = vertices[j, 0] - x, vertices[j, 1] - y
-            ex, ey = bx - ax, by - ay
-            along = -(ax * ex + ay * ey)
-            square = ex * ex + ey * ey
-            if along <= 0.0:
-                distance = ax * ax + ay * ay
-            elif along >= square:
-                distance = bx * bx + by * by
-            else:
-                cross = ax * ey - ay * ex
-                distance = cross * cross
-                # most edges are farther than one met before: that needs no division
-                distance = math.inf if distance > _FARTHER * nearest * square else distance / square
-            nearest = min(nearest, distance)
-            if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
-                inside = not inside
-            ax, ay = bx, by
-        signed = math.sqrt(nearest)
-        out[k] = radius + signed if inside else radius - signed
+        out[k] = depth_at(vertices, fingers[k, 0], fingers[k, 1], radius)
 
 
 def hull_of(vertices: FloatArray) -> FloatArray:

@@ -161,41 +161,64 @@ def three_finger_jams(
     """Hands (k, 3, 2): a finger on a sampled contact, the others wherever they reach elements."""
     z = _complex(hand)
     found: list[Floats] = []
-    elements = len(curve.start) + len(curve.centre)
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        ratio = (z[c] - z[a]) / (z[b] - z[a])
-        shift = every.p * (1.0 - ratio)
-        for e in range(elements):
-            for g in range(elements):
-                for fc in _met(curve, e, g, ratio, shift):
-                    fb = (fc - shift) / ratio
-                    sigma = np.abs((fb - every.p) / (z[b] - z[a]))
-                    use = np.flatnonzero(np.isfinite(fc) & (sigma < below) & (sigma > 0.0))
-                    if not len(use):
-                        continue
-                    fb, fc = fb[use], fc[use]
-                    q_b, q_c = _foot(curve, e, fb), _foot(curve, g, fc)
-                    good = np.isfinite(q_b) & np.isfinite(q_c)
-                    good[good] = curve.on(fb[good]) & curve.on(fc[good])
-                    use, fb, fc, q_b, q_c = (x[good] for x in (use, fb, fc, q_b, q_c))
-                    if not len(use):
-                        continue
-                    n = len(use)
-                    b_q, c_q = np.stack([q_b] * 2, 1), np.stack([q_c] * 2, 1)
-                    b_n = (b_q - fb[:, None]) / curve.radius
-                    c_n = (c_q - fc[:, None]) / curve.radius
-                    all_three = Contacts(
-                        np.concatenate([every.p[use], fb, fc]),
-                        np.concatenate([every.q[use], b_q, c_q]),
-                        np.concatenate([every.n[use], b_n, c_n]),
-                    )
-                    rows = np.arange(n)[:, None] + n * np.arange(3)
-                    jam = squeezes(all_three, rows, phi, curve.ring.diameter)
-                    f = np.empty((n, 3), dtype=np.complex128)
-                    f[:, a], f[:, b], f[:, c] = every.p[use], fb, fc
-                    f = f[jam]
-                    found.append(np.stack([f.real, f.imag], axis=2))
-    return np.concatenate(found) if found else np.empty((0, 3, 2))
+        on, fb, fc, q_b, q_c = _all_met(curve, z, (a, b, c), every, below)
+        for one in (True, False):  # those on a corner, which pushes in more directions, apart
+            rows = np.flatnonzero(every.single[on] == one)
+            jam = rows[_three_squeeze(curve, every, on, fb, fc, q_b, q_c, rows, phi)]
+            f = np.empty((len(jam), 3), dtype=np.complex128)
+            f[:, a], f[:, b], f[:, c] = every.p[on[jam]], fb[jam], fc[jam]
+            found.append(np.stack([f.real, f.imag], axis=2))
+    return np.concatenate(found)
+
+
+def _all_met(
+    curve: Curve, z: Complex, order: tuple[int, int, int], every: Contacts, below: float
+) -> tuple[NDArray[np.int64], Complex, Complex, Complex, Complex]:
+    """Hands (k) with finger a on a sampled contact, whose number comes first, and b and c on an
+    element each; then b and c, and where they touch.
+    """
+    a, b, c = order
+    ratio = (z[c] - z[a]) / (z[b] - z[a])
+    shift = every.p * (1.0 - ratio)
+    elements = len(curve.start) + len(curve.centre)
+    none = np.empty(0, dtype=np.complex128)
+    met = [(np.empty(0, dtype=np.int64), none, none, none, none)]
+    for e in range(elements):
+        for g in range(elements):
+            for fc in _met(curve, e, g, ratio, shift):
+                fb = (fc - shift) / ratio
+                sigma = np.abs((fb - every.p) / (z[b] - z[a]))
+                on = np.flatnonzero(np.isfinite(fc) & (sigma < below) & (sigma > 0.0))
+                if not len(on):
+                    continue
+                fb, fc = fb[on], fc[on]
+                q_b, q_c = _foot(curve, e, fb), _foot(curve, g, fc)
+                good = np.isfinite(q_b) & np.isfinite(q_c)
+                good[good] = curve.on(fb[good]) & curve.on(fc[good])
+                met.append((on[good], fb[good], fc[good], q_b[good], q_c[good]))
+    on, fb, fc, q_b, q_c = (np.concatenate(columns) for columns in zip(*met, strict=True))
+    return on, fb, fc, q_b, q_c
+
+
+def _three_squeeze(
+    curve: Curve, every: Contacts, on: NDArray[np.int64], fb: Complex, fc: Complex,
+    q_b: Complex, q_c: Complex, rows: NDArray[np.int64], phi: float,
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Which of these rows of hands squeeze in balance."""
+    if not len(rows):
+        return np.zeros(0, dtype=np.bool_)
+    on, fb, fc = on[rows], fb[rows], fc[rows]
+    b_q, c_q = (np.stack([q[rows]] * 2, 1) for q in (q_b, q_c))
+    all_three = Contacts(
+        np.concatenate([every.p[on], fb, fc]),
+        np.concatenate([every.q[on], b_q, c_q]),
+        np.concatenate(
+            [every.n[on], (b_q - fb[:, None]) / curve.radius, (c_q - fc[:, None]) / curve.radius]
+        ),
+    )
+    numbers = np.arange(len(rows))[:, None] + len(rows) * np.arange(3)
+    return squeezes(all_three, numbers, phi, curve.ring.diameter)
 
 
 def _met(curve: Curve, e: int, g: int, ratio: complex, shift: Complex) -> list[Complex]:

@@ -106,6 +106,7 @@ def test_bad_input(tmp_path: Path, capsys: Any):
 
 
 @pytest.mark.slow
+@pytest.mark.first
 def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
     case = write_case(t_case(), tmp_path / "t.json")
     out = tmp_path / "answer.json"

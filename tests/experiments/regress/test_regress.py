@@ -293,6 +293,7 @@ def test_any_closing_can_be_run_again(
 
 
 @pytest.mark.slow
+@pytest.mark.first
 def test_the_fast_regression_is_as_committed(capsys: Any) -> None:
     """Every case of ``icage regress --fast`` holds and is within its baseline."""
     done = here(capsys, "regress", "--fast", "--workers", "1")

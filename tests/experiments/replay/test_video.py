@@ -18,13 +18,13 @@ from experiments.figures.drawing.canvas import Canvas
 from experiments.figures.drawing.hand_view import window_on
 from experiments.figures.drawing.plots import Level, Plot
 from experiments.io.outcome_words import END_WORDS
-from experiments.replay import clips, film_page, video
+from experiments.replay import clips, film_page, photographs, video
 from experiments.replay.files import VIDEO, regions_by_grasp
 from experiments.replay.film_page import MAIN
 from experiments.replay.run import Replay, replay
 from experiments.replay.video import SIZE, film, film_alone
 from experiments.replay.what_is_filmed import Filmed, filmed_alone, headline
-from sim.camera.renderer import find_backend
+from sim.camera.renderer import RenderingUnavailable, find_backend
 from sim.closing.judge import OUTCOMES
 from tests.experiments.commands.runner import here
 from tests.experiments.small import t_case, write_case
@@ -90,11 +90,11 @@ def test_a_renderer_that_fails_is_replaced(
     done: Replay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     def broken(*args: Any) -> Iterator[NDArray[np.uint8]]:
-        raise video.RenderingUnavailable("no display")
+        raise RenderingUnavailable("no display")
         yield
 
     two_short_clips(monkeypatch)
-    monkeypatch.setattr(video, "render_frames", broken)
+    monkeypatch.setattr(photographs, "render_frames", broken)
     film(done, "T", regions_by_grasp(done), tmp_path / VIDEO, silent, camera=True)
     check_film(tmp_path / VIDEO, (0.9, 1.1))
 

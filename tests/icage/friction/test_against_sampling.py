@@ -64,6 +64,7 @@ def test_levels_of_discs_agree_with_sampling() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.first
 @pytest.mark.parametrize("part", range(4))
 def test_levels_of_many_discs_agree_with_sampling(part: int) -> None:
     assert wrong_discs(MANY_DISCS[part::4]) == {}
@@ -86,6 +87,7 @@ def test_levels_on_the_tools_agree_with_sampling(name: str, mu: float) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.first
 def test_levels_of_many_targets_agree_with_sampling() -> None:
     assert wrong(MANY) == {}
 

@@ -124,3 +124,13 @@ def test_one_at_a_time(folder: Path) -> None:
     assert again is not None
     again.close()
     assert not background._is_locked(background._lock_file(folder))
+
+
+@pytest.mark.skipif(not hasattr(os, "setpriority"), reason="no priorities here")
+def test_what_is_no_longer_awaited_makes_room(monkeypatch: pytest.MonkeyPatch):
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
+        monkeypatch.setattr(background._seen, "child", child)
+        background.no_longer_awaited()
+        assert os.getpriority(os.PRIO_PROCESS, child.pid) == background.LOW_PRIORITY
+        child.kill()
+    background.no_longer_awaited()  # it has ended: nothing to do

@@ -179,3 +179,18 @@ def test_a_kernel_that_borrows_cannot_make_an_array() -> None:
 
     with pytest.raises(numba.TypingError):
         _array.dispatcher(np.array([1.5]))  # type: ignore[attr-defined]
+
+
+@compiled
+def _scaled(value, factor):  # type: ignore[no-untyped-def]
+    return value * factor
+
+
+@compiled
+def _by_numbers(value, own):  # type: ignore[no-untyped-def]
+    return _scaled(value, 2) + _scaled(value, 3) + _scaled(value, own)
+
+
+def test_a_number_that_stands_in_a_call_compiles_nothing_anew() -> None:
+    assert _by_numbers.dispatcher(1.5, 4) == 13.5  # type: ignore[attr-defined]
+    assert len(_scaled._numba_type_.dispatcher.signatures) == 1  # type: ignore[attr-defined]

@@ -10,8 +10,8 @@ import shapely
 from icage.arrays import FloatArray
 from icage.outline import Outline
 from sim.closing.approach import LEAD, approached, first_touch
-from sim.closing.step_check import RUNNING, StepCheck
-from sim.world.hand_in_object import depths
+from sim.closing.step_check import RUNNING, TOUCHING, StepCheck
+from sim.world.hand_in_object import depths, fingers_seen
 from sim.world.scene import Scene
 from tests.sim.grasps import KnownGrasp, case_outline, l_shape, starts_near, t_shape, triangle
 
@@ -145,3 +145,32 @@ def test_watch_counts_shape_depth_and_rise() -> None:
     assert check.penetration_max[0] > 0.01
     check.observe(np.array([0]), qpos, np.ones((1, 6)))
     assert check.penetration_rest[0] < 1e-12 < check.penetration_max[0]
+
+
+@pytest.mark.parametrize("step", [1e-6, 1e-3, 0.1])
+def test_a_finger_that_is_not_measured_touches_nothing(step: float) -> None:
+    """Hands that wander about, in small steps and large, against a measurement at every look."""
+    rng = np.random.default_rng(9)
+    touched = 0
+    for grasp in GRASPS:
+        scene = grasp.scene()
+        qpos = scene.start_positions(starts_near(grasp, 40, 9))
+        qpos[:, :3] = first_touch(scene, qpos)[:, None] * scene.kinematics.lengths
+        radius, check = scene.finger_radius / scene.object.diameter, StepCheck.over(scene, qpos)
+        deepest, found = np.zeros(len(qpos)), np.empty((len(qpos), 3))
+        for _ in range(60):
+            qpos = qpos + step * rng.normal(size=qpos.shape)
+            qpos[:, :3] *= 1.0 - step
+            check.observe(np.arange(len(qpos)), qpos, np.ones_like(qpos))
+            for row, one in enumerate(qpos):
+                fingers = np.empty((3, 2))
+                fingers_seen(scene.kinematics.directions, one, fingers)
+                depths(scene.object.vertices, fingers, radius, found[row])
+            now = np.maximum(found.max(axis=1), 0.0)
+            deepest = np.maximum(deepest, now)
+            touches = (found > -TOUCHING).sum(axis=1)
+            touched += int(touches.sum())
+            np.testing.assert_array_equal(check.touches, touches)
+            np.testing.assert_array_equal(check.penetration_rest, now)
+            np.testing.assert_array_equal(check.penetration_max, deepest)
+    assert touched > 50
