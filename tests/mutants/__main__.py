@@ -174,6 +174,7 @@ def main() -> int:
     """Draw, try, write the results; 1 if fewer than 85 % of those that are to be are killed."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutants", description="mutants")
     parser.add_argument("--most", type=int, default=300, help="mutants of kernels")
+    parser.add_argument("--around", type=int, help="of the others; default: a third of these")
     parser.add_argument("--seed", type=int, default=14)
     parser.add_argument("--seconds", type=float, default=ALL, help="of tests for a survivor")
     parser.add_argument("--workers", type=int, default=2)
@@ -207,7 +208,8 @@ def main() -> int:
     else:
         random = Random(options.seed)
         drawn = random.sample(everything["kernels"], options.most)
-        drawn += random.sample(everything["around"], options.most // 3)
+        around = options.most // 3 if options.around is None else options.around
+        drawn += random.sample(everything["around"], around)
         left = [one for one in drawn if one.name not in equal]
     pytest.main([*QUIET, *TESTED, "--collect-only", "-qq"])  # loads all of the tests
     for most in (FIRST, options.seconds):
