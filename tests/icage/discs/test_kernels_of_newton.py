@@ -183,8 +183,17 @@ def test_hands_nearly_balanced_are_the_first_of_their_features(seed: int) -> Non
             known.append(row)
     assert nearly_balanced(s.sides, hands, reach, share).tolist() == known
     assert len(seen) > 1
-    many = np.tile(hands, (12, 1))  # more than the table begins with
-    assert nearly_balanced(s.sides, many, reach, share).tolist() == known
+    many = s.v + 0.03 * s.rng.normal(size=(600, 4)) * s.rng.random((600, 1))
+    kinds: dict[tuple[int, ...], int] = {}  # more than the table begins with
+    for row, v in enumerate(many):
+        kinds.setdefault(tuple(s.near(v, reach, 0.0)), row)
+    rows = [
+        row for key, row in kinds.items()
+        if len({k // (2 * s.n) for k in key}) > 1
+        and _pushing_at(s.sides, many[row], np.array(key), len(key))[1].miss
+        <= share * np.hypot(*many[row, 2:])
+    ]  # fmt: skip
+    assert nearly_balanced(s.sides, many, reach, share).tolist() == rows
     assert nearly_balanced(s.sides, hands, reach, 1e9).tolist() != []
 
 

@@ -159,10 +159,11 @@ def test_rays_are_the_extreme_balances(seed: int) -> None:
     assert rays(Z, edge, count, found[: max(m - 1, 0)]) == max(m - 1, 0)
 
 
-def test_two_opposite_forces_are_a_ray() -> None:
+@pytest.mark.parametrize("order", [[0, 1, 2], [0, 2, 1], [2, 0, 1], [1, 0, 2]])
+def test_two_opposite_forces_are_a_ray(order: list[int]) -> None:
     edge = np.zeros((3, 6))
-    edge[:, :2] = [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0]]
-    edge[:, OF_FINGER] = [0, 1, 2]
+    edge[order, :2] = [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0]]
+    edge[order, OF_FINGER] = [0, 1, 2]
     found = np.empty((6, 7))
     assert rays(Z, edge, 3, found) == 1
     # (0, 1)/2 on finger 1 at d, the opposite on finger 2 at d + w: torque -w_x / 2, power -w_y / 2

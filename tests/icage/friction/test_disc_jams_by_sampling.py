@@ -342,10 +342,15 @@ def test_features_that_fit_a_size() -> None:
     which.kind[:] = CORNER
     which.place[:2] = [[0.0, 0.0, 0.0, 0.0], [3.0, 0.0, 0.0, 0.0]]
     state, place = np.zeros((3, COLUMNS)), np.empty((3, 4))
-    finger, chosen = np.array([0, 1]), np.array([0, 1])
+    finger = np.array([0, 1])
 
     def fits(least: float, most: float, thick: float = 1e-6) -> bool:
-        return _sizes_fit(Z, finger, chosen, 2, which, state, least, most, thick, place)
+        one, other = (
+            _sizes_fit(Z, finger, np.array(pair), 2, which, turned, least, most, thick, place)
+            for pair, turned in (([0, 1], state), ([1, 0], state[[1, 0, 2]]))
+        )
+        assert one == other
+        return bool(one)
 
     assert fits(1.0, 3.1)
     assert fits(2.9, 5.0)
@@ -354,6 +359,10 @@ def test_features_that_fit_a_size() -> None:
     assert not fits(3.1, 5.0)
     assert fits(1.0, 2.9, 0.2)
     assert fits(3.1, 5.0, 0.2)
+    assert fits(1.0, 2.5, 0.5)
+    assert not fits(1.0, 2.4375, 0.5)
+    assert fits(4.0, 9.0, 0.5)
+    assert not fits(4.0625, 9.0, 0.5)
     which.place[1, 2:] = 0.0, 4.0  # a side from (3, 0) to (3, 4): 3 to 5 away
     assert fits(1.0, 3.1)
     assert fits(4.9, 6.0)

@@ -260,6 +260,12 @@ def test_which_finger_is_the_first_and_which_hands_may_be() -> None:
     assert first_finger(*round_about.T.copy(), ANY) == 0
 
 
+def test_limits_that_ask_for_a_distance_only() -> None:
+    asked = HandLimits.apart(0.1, 7.0)
+    assert asked == (0.1, 0.0, 7.0, 0.0, math.inf, 0.0, 0.0, math.inf)
+    assert HandLimits.apart(0.1).widest == math.inf
+
+
 def test_a_wanted_shape_is_read_from_the_finger_that_fits_best() -> None:
     x, y = hand(0.5, 2.6)
     like = ANY._replace(phi_1=0.52, phi_2=2.59, within=0.021)
