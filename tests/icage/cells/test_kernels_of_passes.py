@@ -10,6 +10,7 @@ import shapely
 from scipy.optimize import linprog, nnls
 
 from icage.cells.free_space import FreeSpace, merge_tree, search
+from icage.cells.kernels import minimum as module
 from icage.cells.kernels.careful import pass_careful
 from icage.cells.kernels.columns import (
     EDGE_FINGER,
@@ -34,7 +35,7 @@ from icage.cells.kernels.facet import (
     segment_of,
 )
 from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, min_norm, min_norm_careful
-from icage.cells.kernels.minimum import _nearest_on, _shift, _turn, nearest_minimum
+from icage.cells.kernels.minimum import _nearest_on, _shift, _slid_to, _turn, nearest_minimum
 from icage.cells.kernels.near import Hand, cells_near
 from icage.cells.kernels.passes import new_room, pass_fast, pass_value
 from icage.cells.kernels.plateau import plateau_through
@@ -433,6 +434,23 @@ def test_what_a_search_has_visited_is_born_where_its_cells_are(seed: int) -> Non
     assert len(tree.parent) == len(tree.birth)
 
 
+def test_a_hand_slides_along_the_longest_chord_of_its_translations(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    corners = {
+        "none": np.empty((0, 2)), "one": np.array([[2.0, 3.0]]),
+        "chord": np.array([[0.0, 0.0], [2.0, 1e-9], [4.0, 2.0], [2.0, 1.0]]),
+    }  # fmt: skip
+    to = Hand(3.0, -1.0, 1.0, 0.0)
+    for name, known in (("none", (9.0, 8.0)), ("one", (2.0, 3.0)), ("chord", (2.0, 1.0))):
+        monkeypatch.setattr(module, "translations", lambda *_, name=name: corners[name])
+        assert _slid_to(None, None, None, 9.0, 8.0, 1.0, 0.0, to) == pytest.approx(known)
+        beyond = to._replace(d_x=30.0)
+        found = _slid_to(None, None, None, 0.1, 0.0, 1.0, 0.0, beyond)
+        if name == "chord":
+            assert found == pytest.approx((4.0, 2.0))
+
+
 def test_moves_and_turns_of_hands() -> None:
     rng = np.random.default_rng(3)
     z = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.9]])
@@ -556,6 +574,20 @@ def test_all_cells_of_a_small_object() -> None:
             value = pass_value(s.pieces, s.z, facet, *args, room)[0]
             assert value == pytest.approx(some.sigma[k])
             assert some.sigma[k] < least[5 + k]
+    alone = np.full(len(cells), np.inf)  # as if no cell had a pass
+    for k in range(5, 25):
+        one = whole_least_points(s.pieces, s.z, cells, alone, k, k + 1, *args)
+        held = []
+        for i in range(3):
+            values = [
+                pass_value(s.pieces, s.z, facet_of(s.pieces, cells[k], i, slot), *args, room)[0]
+                for slot in range(s.pieces.ptr[cells[k, i]], s.pieces.ptr[cells[k, i] + 1])
+                if s.pieces.slot_neighbour[slot] < 0
+            ]
+            held.append(min(values, default=np.inf))
+        told = sum(h <= min(held) + 1e-9 * s.size for h in held)
+        pinched = len(set(cells[k].tolist())) == 1
+        assert one.sigma[0] == (0.0 if pinched else min(held) if told >= 2 else np.inf)
     lowest = lowest_cells(s.pieces, s.z, *args, 1e-9, 1e-9)
     table = dict(zip(map(tuple, every.tolist()), born.tolist(), strict=True))
     known_lowest = []

@@ -369,6 +369,11 @@ def test_features_that_fit_a_size() -> None:
     assert fits(5.5, 9.0)
     assert not fits(5.7, 9.0)
     assert not fits(0.1, 1.5)
+    which.place[1, 2:] = 4.0, 0.0  # from (3, 0) to (7, 0)
+    assert fits(3.1, 3.1)
+    assert not fits(1.0, 2.9)
+    assert fits(6.9, 9.0)
+    assert not fits(7.1, 9.0)
     which.place[1, 2:] = 0.0
     which.kind[1], state[1, :2] = ARC, (0.0, 0.5)
     chord, bulge = 2 * RADIUS * math.sin(0.5), RADIUS * (1.0 - math.cos(0.5))

@@ -67,6 +67,12 @@ def test_features_that_fit_a_size() -> None:
     assert not fits(1.0, 2.4375, 0, 1, thick=0.5)
     assert fits(4.0, 9.0, 0, 1, thick=0.5)
     assert not fits(4.0625, 9.0, 0, 1, thick=0.5)
+    sides[2, 2:] = 4.0, 0.0
+    assert fits(3.1, 3.1, 0, 2)
+    assert not fits(1.0, 2.9, 0, 2)
+    assert fits(6.9, 9.0, 0, 2)
+    assert not fits(7.1, 9.0, 0, 2)
+    sides[2, 2:] = 0.0, 4.0
     middle = math.hypot(3.0, 2.0)
     assert fits(middle + 1.99, 9.0, 0, 2)
     assert not fits(middle + 2.01, 9.0, 0, 2)

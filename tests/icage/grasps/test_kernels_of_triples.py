@@ -129,6 +129,13 @@ def test_clipped_polygons_are_shapelys(seed: int) -> None:
 
 
 def test_points_are_spread_evenly_over_a_polygon() -> None:
+    triangle = np.array([[0.0, 0.0], [6.0, 0.0], [3.0, 12.0]])
+    middle, known = np.array([3.0, 4.0]), []
+    for a, b in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+        ends = [a - middle, b - middle]  # three rows of small triangles: the middles of the upright
+        shares = [(i + 1 / 3, j + 1 / 3) for i in range(3) for j in range(3 - i)]
+        known += [middle + (s * ends[0] + t * ends[1]) / 3.0 for s, t in shares]
+    assert _spread(*triangle.T.copy(), 3, 1e3) == pytest.approx(np.array(known))
     x, y = np.array([1.0, 5.0, 5.0, 1.0]), np.array([2.0, 2.0, 4.0, 4.0])
     for step, least in ((0.5, 40), (100.0, 24)):
         found = _spread(x, y, 4, step)

@@ -52,7 +52,7 @@ def test_the_heap_gives_by_value_and_then_by_age() -> None:
     rng = np.random.default_rng(2)
     value, item = np.full(64, np.nan), np.full(64, -1)
     known: list[tuple[float, int]] = []
-    for age in range(400):
+    for age in rng.permutation(400).tolist():
         if known and (len(known) == 64 or rng.random() < 0.45):
             assert (value[0], item[0]) == heapq.heappop(known)
             heap_pop(value, item, len(known) + 1)
