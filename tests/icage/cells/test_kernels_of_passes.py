@@ -277,6 +277,8 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
         assert born.sigma == pytest.approx(known, abs=1e-9)
         assert table.value[k].tolist() == [born.sigma, born.w_x, born.w_y]
         assert table.where[k].tolist() == [born.finger, born.slot]
+        if not 0.0 < born.sigma < np.inf:
+            assert born[1:] == (0.0, 0.0, -1, -1)
         if 0.0 < born.sigma < np.inf:
             assert born.finger in (0, 1)
             assert values[born.finger, born.slot] == pytest.approx(known, abs=1e-9)

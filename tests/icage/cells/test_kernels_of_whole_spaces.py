@@ -114,6 +114,11 @@ def test_escape_levels_of_cells_are_those_of_a_search_from_each(seed: int) -> No
     some = escape_levels(s.pieces, s.z, cells, high, *args, 0, found.memory)
     assert (some.levels <= 1e9).all()
     assert (some.levels >= levels - 1e-12).all()
+    visited = {tuple(c) for k in known for c in k.nodes[:, :3].tolist()}
+    keys = found.memory.keys[found.memory.keys >= 0]
+    told = set(zip(*(v.tolist() for v in (keys // m // m, keys // m % m, keys % m)), strict=True))
+    assert told <= visited
+    assert {tuple(c) for c in cells.tolist()} <= told
     for at in np.flatnonzero(found.memory.keys >= 0)[:25]:
         key = found.memory.keys[at]
         assert hash_slot(found.memory.keys, key) == at

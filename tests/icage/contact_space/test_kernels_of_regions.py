@@ -346,6 +346,31 @@ def test_tunnel_edges_lead_down_through_free_space(seed: int) -> None:
             assert way.intersection(s.solid).length < 1e-6 * s.size
 
 
+def test_lines_of_labels_are_distances() -> None:
+    s = Setting(1)
+    i, j, k, c = s.regions(1)[0]
+    long_s, long_u = s.space.edge_length[j], s.space.edge_length[k]
+    for a, b in s.rng.random((10, 2)) * [long_s, long_u]:
+        p = shapely.Point(third_finger(s.space, i, j, k, a, b))
+        edges = list(s.shapes[c].exterior.coords)
+        known = [a, b, long_s - a, long_u - b]
+        for u, v in itertools.pairwise(edges):
+            way = complex(*v) - complex(*u)
+            known.append(((complex(p.x, p.y) - complex(*u)) * np.conj(way)).imag / abs(way))
+        for label, gap in enumerate(known):
+            h0, hs, hu = label_line(s.space, i, j, k, c, label)
+            assert h0 + hs * a + hu * b == pytest.approx(gap, abs=1e-9)
+            g0, gs, gu, long = slot_progress(s.space, i, j, k, c, label)
+            if label < FIRST_SLOT:
+                assert (g0, gs, gu, long) == (0.0, 0.0, 0.0, 0.0)
+                continue
+            u, v = edges[label - FIRST_SLOT : label - FIRST_SLOT + 2]
+            way = complex(*v) - complex(*u)
+            on = ((complex(p.x, p.y) - complex(*u)) * np.conj(way)).real / abs(way)
+            assert g0 + gs * a + gu * b == pytest.approx(on, abs=1e-9)
+            assert long == pytest.approx(abs(way))
+
+
 def test_the_height_of_the_third_finger_is_linear() -> None:
     s = Setting(0)
     for _ in range(20):

@@ -225,6 +225,38 @@ def test_all_triples_that_squeeze_somewhere_and_no_others(
             assert area * turn > 0.0
 
 
+@pytest.mark.parametrize(("family", "seed"), [("star", 3), ("rectilinear", 1)])
+def test_points_are_looked_for_in_a_square_round_the_middle(family: str, seed: int) -> None:
+    """Whose corners lie as far from the origin in x as they do not in y."""
+    told, outline = features(family, seed)
+    d = outline.diameter
+    middle = np.asarray(outline.centroid) + 0.1 * d * np.array([1.0, -0.5])
+    reach = 0.35 * d
+    limits = HandLimits.apart(0.01 * d)
+    args = (told.kind, told.point, told.normal, told.planes, middle, reach, reach, 0.05 * d)
+    found = feasible_triples(*args, limits, 0, 1)
+    assert len(found.points) > 0
+    assert np.abs(found.points - middle).max() <= reach
+    names = {tuple(sorted(t)) for t in found.triples.tolist()}
+    corners = [np.array([a, b]) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    met: dict[tuple[int, ...], int] = {}
+    for p in [middle + 0.99 * reach * c for c in corners] + list(
+        middle + reach * np.random.default_rng(4).uniform(-1.0, 1.0, (40, 2))
+    ):
+        inside = [f for f in range(len(told.kind)) if is_in_set(told.planes, f, *p)]
+        for three in combinations(inside, 3):
+            room = [np.empty(3) for _ in range(4)]
+            if _squeezing_area(
+                told.kind, told.point, told.normal, told.planes, *three, *p, limits, *room
+            ):
+                met[three] = met.get(three, 0) + 1
+    assert {three for three, times in met.items() if times >= 2} <= names
+    for three in list(met)[:6]:
+        points = points_of_triple(*args[:4], middle, reach, reach, 0.05 * d, limits,
+                                  np.array(three)).points  # fmt: skip
+        assert np.abs(points - middle).max() <= reach
+
+
 def test_no_point_of_a_triple_whose_sets_do_not_meet() -> None:
     kind = np.zeros(3, np.int64)
     planes = np.array([[[1.0, 0, 5.0], [1.0, 0, 5.0]]] * 2 + [[[-1.0, 0, 0], [-1.0, 0, 0]]])
