@@ -346,6 +346,31 @@ def test_tunnel_edges_lead_down_through_free_space(seed: int) -> None:
             assert way.intersection(s.solid).length < 1e-6 * s.size
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_every_lowest_pair_with_a_free_third_finger_has_its_tunnel_edge(seed: int) -> None:
+    s = Setting(seed)
+    low, at = rectangle_minima(s.space)
+    rows = [tuple(row[:3]) for row in all_tunnels(s.space).rows.tolist()]
+    known = []
+    for j in range(s.n):
+        for k in range(s.n):
+            a, b = at[j, k, :2]
+            valley = np.abs(at[j, k, :2] - at[j, k, 2:]).sum() > s.space.clip
+            if valley or low[j, k] <= s.space.pinch or lower_beside(s.space, low, at, j, k):
+                continue
+            for i in range(3):
+                third = s.fingers(i, j, k, a, b)[(i + 2) % 3]
+                point = shapely.Point(third.real, third.imag)
+                free = s.solid.distance(point) > 2.0 * s.space.touch
+                where, landing = np.empty(4), np.empty(3, np.int64)
+                shots = [shoot(s.space, i, j, k, a, b, keep, landing, where) for keep in range(2)]
+                if free and max(shots) != NO_TUNNEL:
+                    known.append((i, j, k))
+    narrow = [row for row in rows if np.abs(at[row[1], row[2], :2] - at[row[1], row[2], 2:]).sum()
+              <= s.space.clip]  # fmt: skip
+    assert sorted(narrow) == sorted(known)
+
+
 def test_lines_of_labels_are_distances() -> None:
     s = Setting(1)
     i, j, k, c = s.regions(1)[0]

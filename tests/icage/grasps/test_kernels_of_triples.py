@@ -257,6 +257,22 @@ def test_points_are_looked_for_in_a_square_round_the_middle(family: str, seed: i
         assert np.abs(points - middle).max() <= reach
 
 
+@pytest.mark.parametrize(("family", "seed"), [("tool", 1), ("lattice", 3)])
+def test_a_triple_with_a_point_near_the_middle_is_proposed(family: str, seed: int) -> None:
+    """Also where the middle of its set squeezes nothing: of some the points have to be tried."""
+    told, outline = features(family, seed)
+    d, middle = outline.diameter, np.asarray(outline.centroid)
+    limits = HandLimits.apart(0.01 * d)
+    args = (told.kind, told.point, told.normal, told.planes, middle, 3.0 * d, 1.6 * d, 0.2 * d)
+    names = {tuple(sorted(t)) for t in feasible_triples(*args, limits, 0, 1).triples.tolist()}
+    for three in combinations(range(len(told.kind)), 3):
+        points = points_of_triple(*args, limits, np.array(three)).points
+        if len(points) and np.abs(points - middle).max(axis=1).min() < 1.6 * d:
+            assert three in names
+        if three not in names:
+            assert (np.abs(points - middle).max(axis=1) > 1.6 * d - 1e-9).all()
+
+
 def test_no_point_of_a_triple_whose_sets_do_not_meet() -> None:
     kind = np.zeros(3, np.int64)
     planes = np.array([[[1.0, 0, 5.0], [1.0, 0, 5.0]]] * 2 + [[[-1.0, 0, 0], [-1.0, 0, 0]]])
