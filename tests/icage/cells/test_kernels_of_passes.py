@@ -432,6 +432,21 @@ def test_what_a_search_has_visited_is_born_where_its_cells_are(seed: int) -> Non
         facet = facet_of(s.pieces, nodes[k], finger, slot)
         assert pass_value(s.pieces, s.z, facet, *args, room)[0] == pytest.approx(told.value[k, 0])
         assert np.hypot(*told.value[k, 1:]) == pytest.approx(told.value[k, 0])
+    # the other way round: a pass tells the cell behind it the edge of its own piece
+    back = found.edges.copy()
+    inside = back[:, EDGE_TO] >= 0
+    for e in np.flatnonzero(inside):
+        back[e, [EDGE_FROM, EDGE_TO]] = back[e, [EDGE_TO, EDGE_FROM]]
+        f, slot = back[e, EDGE_FINGER], back[e, EDGE_SLOT]
+        here, there = found.nodes[back[e, EDGE_FROM], f], found.nodes[back[e, EDGE_TO], f]
+        assert s.pieces.slot_neighbour[slot] == here
+        own = range(s.pieces.ptr[here], s.pieces.ptr[here + 1])
+        back[e, EDGE_SLOT] = next(q for q in own if s.pieces.slot_neighbour[q] == there)
+    turned = visited_births(s.pieces, s.z, nodes, back, found.edge_value, *args)
+    assert turned.value[:, 0] == pytest.approx(known.value[:, 0], abs=1e-9)
+    for k in np.flatnonzero(turned.where[:, 0] >= 0):
+        facet = facet_of(s.pieces, nodes[k], *turned.where[k])
+        assert pass_value(s.pieces, s.z, facet, *args, room)[0] == pytest.approx(turned.value[k, 0])
     tree = merge_tree(found)
     assert len(tree.parent) == len(tree.birth)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from icage.friction.disc_contacts import DiscContacts
+from icage.friction.kernels import disc_balance as module
 from icage.friction.kernels.disc_balance import _power, _torque, least_balanced
 from icage.friction.kernels.disc_features import ARC, CORNER, EDGE, rays
 from icage.friction.kernels.disc_halving import _away, _room_for, halved
@@ -397,3 +398,31 @@ def test_what_begins_and_what_is_left_of_a_tolerance() -> None:
     assert left.turn == pytest.approx(0.3 - 0.16)
     assert left._replace(reach=0.5, turn=0.3) == near
     assert _smaller(near, slack._replace(shift=1.0), 1.0)[2::3] == (0.0, 0.0, 4.0)[:2] + left[8:]
+
+
+@pytest.mark.parametrize("seed", [42, 72, 81, 92, 98])
+def test_a_bound_rises_as_its_polygon_is_halved(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two balances that squeeze together only on a curve: what is left of it is never too much."""
+    rng = np.random.default_rng([seed, 3])
+    flat = Flat.drawn(rng, np.append(rng.normal(size=2), [1.5, 0.8]), 0.5)
+    room = _room(3)
+    m = 0
+    while not m:
+        edge = edges(rng, 5)
+        m = rays(Z, edge, 5, room.ray)
+    ray = room.ray[:m].copy()
+    hands = flat.hands(rng, 3000)
+    held = hands[squeeze(ray, hands) < -1e-9]
+    n, point = len(flat.inside), np.full(4, np.nan)
+    bounds = []
+    for most in (0, 3, 6, 9):
+        monkeypatch.setattr(module, "HALVED", most)
+        room.polygon[:n] = flat.corners
+        bound = least_balanced(n, Z, ray, m, ALL_FAR, NO_GOAL, 1e6, 1e-12, 1e-12, room, point)
+        bounds.append(float(bound))
+    assert bounds == sorted(bounds)
+    if len(held):
+        least = np.hypot(held[:, 2], held[:, 3]).min()
+        assert bounds[-1] <= least + 1e-9
+        assert bounds[-1] >= least - 0.3
+    assert bounds[-1] > bounds[0]

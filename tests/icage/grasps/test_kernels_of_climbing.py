@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from icage.cells.free_space import FreeSpace
+from icage.grasps.features import features_of, neighbours
 from icage.grasps.kernels import climb as module
 from icage.grasps.kernels.climb import climb, tried_jobs
 from icage.grasps.kernels.evaluate import Sought, Verdict, evaluate
@@ -102,6 +103,36 @@ def test_what_is_no_candidate_is_said() -> None:
     along = np.array([[1.0, 0.0], [2.0, 0.0], [1.5, 1.0]])  # a plateau
     bar.space = FreeSpace.around(Outline(bar.shape), HandShape.from_contacts(along))
     assert bar.asked(along)[:5] == (Verdict.NO_MINIMUM, *nothing)
+
+
+def test_a_finger_in_the_air_beside_two_that_hold_is_no_grasp() -> None:
+    """An hourglass squeezed in its waist."""
+    glass = Triangle()
+    glass.shape = np.array([[-2.0, -2], [2, -2], [0.5, 0], [2, 2], [-2, 2], [-0.5, 0]])
+    contacts = np.array([[-0.5, 0.0], [0.5, 0.0], [2.5, 1.0]])
+    glass.space = FreeSpace.around(Outline(glass.shape), HandShape.from_contacts(contacts))
+    assert glass.asked(contacts)[:5] == (Verdict.NO_MINIMUM, 0, 0.0, 0.0, 0)
+    touching = np.array([[-0.5, 0.0], [0.5, 0.0], [1.25, 1.0]])
+    glass.space = FreeSpace.around(Outline(glass.shape), HandShape.from_contacts(touching))
+    assert glass.asked(touching)[0] == Verdict.CAGE
+
+
+def test_a_point_is_tried_on_the_features_that_can_use_it() -> None:
+    t = Triangle()
+    outline = Outline(t.shape)
+    features = features_of(outline)
+    beside = neighbours(features)
+    sought = Sought(False, NONE, 0.01, 10**6)
+    ring = t.shape - t.space.origin
+    own, x, y = np.empty(3, np.int64), np.empty(3), np.empty(3)
+    args = (t.space.pieces, t.space.origin, ring, features, beside, t.limits, sought)
+    middle = t.contacts.mean(axis=0)
+    found = module.tried(*args, np.array([0, 1, 2]), *middle, own, x, y)
+    assert found == t.asked(t.contacts)[:5]
+    assert own.tolist() == [0, 1, 2]
+    assert np.column_stack([x, y]) == pytest.approx(t.contacts, abs=1e-9)
+    far = module.tried(*args, np.array([0, 1, 2]), *(middle + 50.0), own, x, y)
+    assert far == (0, 0, 0.0, 0.0, 0)
 
 
 @pytest.fixture
