@@ -199,11 +199,12 @@ def main() -> int:
     equal = equivalents(everything)
     counts = {group: len(found) for group, found in everything.items()}
     known: dict[str, str] = {}
+    before: dict[str, str] = {}
     if options.survivors:
         old = json.loads(options.results.read_text())
-        known = {row["mutant"]: row["killed_by"] for row in old["mutants"]}
-        drawn = [one for one in chain.from_iterable(everything.values()) if one.name in known]
-        left = [one for one in drawn if not known[one.name] and one.name not in equal]
+        before = {row["mutant"]: row["killed_by"] for row in old["mutants"]}
+        drawn = [one for one in chain.from_iterable(everything.values()) if one.name in before]
+        left = [one for one in drawn if not before[one.name] and one.name not in equal]
         options.seed = old["seed"]
     else:
         random = Random(options.seed)
@@ -216,7 +217,7 @@ def main() -> int:
         known |= tried(left, tests, options.workers, most)
         left = [one for one in left if not known[one.name]]
         print(f"{len(left)} of {len(drawn)} left after {most:g} s of tests", flush=True)
-        rows = [_row(one, known.get(one.name, ""), equal.get(one.name, "")) for one in drawn]
+        rows = [_row(one, before or known, known, equal) for one in drawn]
         document = _document(options.seed, counts, rows)
         options.results.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(document["killed"], indent=1))
@@ -229,14 +230,16 @@ def _watch(out: Path, tests: Iterable[str]) -> None:
     pytest.main([*QUIET, *tests], plugins=[Reached(out)])
 
 
-def _row(mutant: Mutant, killed_by: str, equivalent: str) -> dict[str, Any]:
-    row = {
-        "group": mutant.group,
-        "mutant": mutant.name,
-        "kind": mutant.change.kind,
-        "killed_by": killed_by,
-    }
-    return row | ({"equivalent": equivalent} if equivalent else {})
+def _row(
+    mutant: Mutant, drawn: dict[str, str], known: dict[str, str], equal: dict[str, str]
+) -> dict[str, Any]:
+    """What became of a mutant when it was drawn, and, if it survived, since."""
+    name, by = mutant.name, drawn.get(mutant.name, "")
+    row = {"group": mutant.group, "mutant": name, "kind": mutant.change.kind, "killed_by": by}
+    since = known.get(name, "")
+    if since and not by:
+        row["killed_since_by"] = since
+    return row | ({"equivalent": equal[name]} if name in equal else {})
 
 
 def _document(seed: int, counts: dict[str, int], rows: list[dict[str, Any]]) -> dict[str, Any]:
@@ -244,12 +247,16 @@ def _document(seed: int, counts: dict[str, int], rows: list[dict[str, Any]]) -> 
     for group in counts:
         here = [row for row in rows if row["group"] == group]
         others = [row for row in here if "equivalent" not in row]
-        killed[group] = {"of_all": _share(here), "of_the_others": _share(others)}
+        killed[group] = {
+            "of_all": _share(here, "killed_by"),
+            "of_the_others": _share(others, "killed_by"),
+            "of_the_others_since": _share(others, "killed_by", "killed_since_by"),
+        }
     return {"seed": seed, "all": counts, "killed": killed, "mutants": rows}
 
 
-def _share(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    good = sum(bool(row["killed_by"]) for row in rows)
+def _share(rows: list[dict[str, Any]], *by: str) -> dict[str, Any]:
+    good = sum(any(row.get(name) for name in by) for row in rows)
     low, high = wilson(good, len(rows)) if rows else (0.0, 1.0)
     return {
         "of": len(rows), "killed": good, "rate": round(good / max(1, len(rows)), 4),
