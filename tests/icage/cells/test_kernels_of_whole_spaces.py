@@ -281,8 +281,28 @@ def test_a_passage_of_no_width_is_open_and_one_less_is_not() -> None:
     for gap, is_open in ((0.0, True), (1e-15, True), (1.0e-14, True), (1e-12, False)):
         low = [(-5.0, -gap), (0.0, -9.0), (5.0, -gap)]
         pieces = three_pieces([base, up, low])
-        facet = facet_of(pieces, np.arange(3), 0, 2)
+        facet = facet_of(pieces, np.arange(3), 0, 1)
         assert (pass_value(pieces, z, facet, 50.0, 1e-12, new_room())[0] < np.inf) == is_open
+
+
+@pytest.mark.parametrize("height", [0.3, -1.7, 0.1])
+def test_edges_in_one_line_touch_exactly(height: float) -> None:
+    """Of many lengths, parallel to the segment: no rounding of a normal parts or joins them."""
+    z = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
+    base = [(0.5, -5.0), (1.0, 0.0), (0.0, 0.0)]
+    for a in (0.7, 3.1, 5.3, 9.9):
+        for b in (0.6, 2.3, 6.1, 7.7):
+            up = [(-a, height), (a + 0.1, height), (0.0, 9.0)]
+            low = [(-b, height), (0.0, -9.0), (b + 0.3, height)]
+            pieces = three_pieces([base, up, low])
+            facet = facet_of(pieces, np.arange(3), 0, 1)
+            found = pass_careful(pieces, z, facet, 50.0, 0.0)
+            assert found.status == FOUND
+            assert found.w_y == pytest.approx(height, rel=1e-15)
+            below = np.nextafter(height, -9.0)
+            apart = [(-b, below), (0.0, -9.0), (b + 0.3, below)]
+            pieces = three_pieces([base, up, apart])
+            assert pass_careful(pieces, z, facet, 50.0, 0.0).status == INFEASIBLE
 
 
 def test_a_corner_is_trusted_as_far_as_its_errors_allow() -> None:
