@@ -261,9 +261,11 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
     s = Setting(seed)
     room = new_room()
     cells, _ = cells_near(s.pieces, s.z, s.hand, 0.05 * s.size, 10**6)
-    chosen = cells[s.rng.permutation(len(cells))[:25]]
+    far = s.rng.integers(0, len(s.pieces.ptr) - 1, (20, 3))  # most of them hold no hand
+    chosen = np.concatenate([cells[s.rng.permutation(len(cells))[:25]], far])
     args = (s.space.cap, s.space.worst)
     table = births(s.pieces, s.z, chosen, *args)
+    told = [0, 0]
     for k, cell in enumerate(chosen):
         born = birth(s.pieces, s.z, cell, *args, room)
         values = {}
@@ -277,7 +279,8 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
         assert born.sigma == pytest.approx(known, abs=1e-9)
         assert table.value[k].tolist() == [born.sigma, born.w_x, born.w_y]
         assert table.where[k].tolist() == [born.finger, born.slot]
-        if not 0.0 < born.sigma < np.inf:
+        told[int(born.sigma < np.inf)] += 1
+        if born.sigma == np.inf or cell[0] == cell[1] == cell[2]:
             assert born[1:] == (0.0, 0.0, -1, -1)
         if 0.0 < born.sigma < np.inf:
             assert born.finger in (0, 1)
@@ -292,6 +295,7 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
             for p, q, piece in zip(at, spots, cell, strict=True):
                 assert (p.real, p.imag) == pytest.approx(tuple(q), abs=1e-9)
                 assert s.shapes[piece].distance(shapely.Point(q)) < 1e-8
+    assert min(told) > 3
 
 
 @pytest.mark.parametrize("seed", range(4))
