@@ -27,17 +27,23 @@ from typing import Any
 
 ROOMS = "icage,sim"
 
-WHOLE = ("icage", "sim", "tests/icage", "tests/sim", "tests/zoo")
+WHOLE = (
+    "icage", "sim", "tests/icage", "tests/sim", "tests/zoo", "tests/experiments/commands",
+    "tests/experiments/explore/test_tables.py", "tests/experiments/shake",
+)  # fmt: skip
 """With machine code."""
 
 RECORDED = "tests/icage/kernels/test_recorded_answers.py"
+
+SEARCHES = f"{RECORDED}::test_an_answer_is_the_recorded_one[search-"
+"""Minutes each where kernels are interpreted; what they run is tested by itself."""
 
 
 def of_kernels() -> tuple[str, ...]:
     """What runs interpreted: recorded answers, and what asks for the fixture ``plain``."""
     files = sorted(Path("tests/icage").rglob("test_*.py"))
     asks = [str(file) for file in files if 'usefixtures("plain")' in file.read_text()]
-    return (RECORDED, *asks)
+    return (RECORDED, *asks, "--deselect", SEARCHES)
 
 
 def run(tests: tuple[str, ...], folder: Path, number: int, *, plain: bool) -> None:
