@@ -1,4 +1,8 @@
-"""The changes that are made to a function: one at a time, each of a kind that a slip could make."""
+"""The changes that are made to a function: one at a time, each of a kind that a slip could make.
+
+What is written as the size of ``np.empty`` is left as it is: room that is longer than it needs to
+be, which is what adding one makes of it, holds nothing that anybody reads.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +25,6 @@ _COMPUTED: Final[dict[type[ast.operator], type[ast.operator]]] = {
     ast.LShift: ast.RShift, ast.RShift: ast.LShift, ast.Pow: ast.Mult,
 }  # fmt: skip
 
-_TIES: Final = ("< to <=", "<= to <", "> to >=", ">= to >")
-"""What differs only where two numbers are equal."""
-
 
 @dataclass(frozen=True, slots=True)
 class Change:
@@ -43,11 +44,6 @@ class Change:
     def name(self) -> str:
         """In one line."""
         return f"{self.function} line {self.line}: {self.before} -> {self.after}"
-
-    @property
-    def is_tie(self) -> bool:
-        """Whether it shows only where two numbers are equal."""
-        return self.kind in _TIES
 
 
 Edit = tuple[str, Callable[[ast.AST], None]]
@@ -82,6 +78,24 @@ def changed(function: ast.FunctionDef, change: Change) -> ast.FunctionDef:
     return new
 
 
+def statement_lines(function: ast.FunctionDef, line: int) -> range:
+    """The lines of the innermost statement on a line, of a block only those of its head.
+
+    >>> (f,) = ast.parse("def f(x):\\n    if (x or\\n       1):\\n        return (2,\\n    3)").body
+    >>> list(statement_lines(f, 3)), list(statement_lines(f, 5))
+    ([2, 3], [4, 5])
+    """
+    found = range(function.lineno, function.lineno + 1)
+    for node in ast.walk(function):
+        if isinstance(node, ast.stmt) and node is not function:
+            body = getattr(node, "body", None)
+            last = (node.end_lineno or node.lineno) if not body else body[0].lineno - 1
+            lines = range(node.lineno, max(last, node.lineno) + 1)
+            if line in lines and (len(lines) < len(found) or line not in found):
+                found = lines
+    return found
+
+
 def _inner(node: ast.AST) -> Iterator[ast.AST]:
     """What computes: no types, no words of errors, no documentation, no default of an argument."""
     for name, field in ast.iter_fields(node):
@@ -91,6 +105,8 @@ def _inner(node: ast.AST) -> Iterator[ast.AST]:
             continue
         for child in field if isinstance(field, list) else [field]:
             if not isinstance(child, ast.AST) or isinstance(child, ast.Raise | ast.JoinedStr):
+                continue
+            if isinstance(child, ast.Call) and ast.unparse(child.func) == "np.empty":
                 continue
             yield child
             yield from _inner(child)

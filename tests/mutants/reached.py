@@ -1,84 +1,82 @@
-"""Which functions each test reaches, and how long it takes, with kernels as plain Python.
+"""Which lines each test runs, and how long it takes, with kernels as plain Python.
 
-A plugin of pytest. A test that takes longer than ``PATIENCE`` is left out, so is one that fails
-interpreted: it looks after machine code, or is too long without it.
+A plugin of pytest, on coverage.py. A test that takes longer than ``PATIENCE`` is left out, so is
+one that fails interpreted: it looks after machine code, or is too long without it.
 """
 
 from __future__ import annotations
 
 import json
 import signal
-import sys
-import threading
 import time
 from collections.abc import Generator
 from pathlib import Path
-from types import CodeType, FrameType
 from typing import Any, Final
 
+import coverage
 import pytest
 
 from experiments.environment import ROOT
 
-PATIENCE: Final = 4
+PATIENCE: Final = 3
 """[s] Of processor time, for one test."""
 
 
 class Reached:
-    """Writes {test: [seconds, ["file:qualified name", ...]]}, as far as it has come."""
+    """Writes {test: [seconds, {file: [lines]}]}, over what ``out`` had of other tests."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
-        self.found: dict[str, tuple[float, list[str]]] = {}
-        self._seen: set[CodeType] = set()
-        self._written = 0.0
+        self._seconds: dict[str, float] = {}
+        self._failed: set[str] = set()
+        self._cover = coverage.Coverage(
+            data_file=str(out.with_suffix(".coverage")), source=[str(ROOT / "icage")]
+        )
+
+    def pytest_sessionstart(self) -> None:
+        self._cover.erase()
+        self._cover.start()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        self._seen.clear()
+        self._cover.switch_context(item.nodeid)
         started = time.process_time()
         signal.signal(signal.SIGPROF, _too_long)
         signal.setitimer(signal.ITIMER_PROF, PATIENCE)
-        threading.setprofile(self._profile)
-        sys.setprofile(self._profile)
         try:
             return (yield)
         finally:
-            sys.setprofile(None)
-            threading.setprofile(None)
             signal.setitimer(signal.ITIMER_PROF, 0.0)
-            self._keep(item.nodeid, time.process_time() - started)
+            self._cover.switch_context("")
+            self._seconds[item.nodeid] = round(time.process_time() - started, 3)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.outcome != "passed":
-            self.found[report.nodeid] = (-1.0, [])
+            self._failed.add(report.nodeid)
 
     def pytest_sessionfinish(self) -> None:
-        self._write()
-
-    def _profile(self, frame: FrameType, event: str, _: object) -> None:
-        if event == "call":
-            self._seen.add(frame.f_code)
-
-    def _keep(self, test: str, seconds: float) -> None:
-        if test not in self.found:
-            names = {name for code in self._seen if (name := name_of(code))}
-            self.found[test] = (round(seconds, 3), sorted(names))
-        if time.monotonic() - self._written > 20.0:
-            self._write()
-
-    def _write(self) -> None:
-        self._written = time.monotonic()
-        good = {test: one for test, one in self.found.items() if one[0] >= 0.0}
-        self.out.write_text(json.dumps(good, indent=0))
+        self._cover.stop()
+        self._cover.save()
+        old = json.loads(self.out.read_text()) if self.out.exists() else {}
+        kept = {test: one for test, one in old.items() if test not in self._seconds}
+        lines = _lines_by_test(self._cover.get_data())
+        good = {
+            test: [seconds, lines.get(test, {})]
+            for test, seconds in self._seconds.items()
+            if test not in self._failed
+        }
+        self.out.write_text(json.dumps(kept | good))
 
 
-def name_of(code: CodeType) -> str:
-    """``icage/a/b.py:qualified.name`` of code of the planner, else empty."""
-    path = Path(code.co_filename)
-    if not path.is_relative_to(ROOT / "icage"):
-        return ""
-    return f"{path.relative_to(ROOT)}:{code.co_qualname.split('.<locals>')[0]}"
+def _lines_by_test(data: coverage.CoverageData) -> dict[str, dict[str, list[int]]]:
+    found: dict[str, dict[str, list[int]]] = {}
+    for path in data.measured_files():
+        name = str(Path(path).relative_to(ROOT))
+        for line, tests in data.contexts_by_lineno(path).items():
+            for test in tests:
+                if test:
+                    found.setdefault(test, {}).setdefault(name, []).append(line)
+    return found
 
 
 def _too_long(number: int, frame: object) -> None:

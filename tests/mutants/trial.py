@@ -17,9 +17,12 @@ from tests.mutants.place import put
 
 QUIET: Final = ("-q", "-n", "0", "-x", "--tb=no", "-p", "no:cacheprovider")
 
-SLOWER: Final = 5.0
-"""A mutant that takes so many times as long as its tests and ``MORE`` seconds, is found out."""
-MORE: Final = 20.0
+SLOWER: Final = 4.0
+"""A mutant is found out by a test that takes so many times its processor time and ``MORE``."""
+MORE: Final = 2.0
+"""[s]"""
+FOREVER: Final = 1800.0
+"""[s] On the clock: for what does not come to the next step of Python."""
 
 
 @dataclass(slots=True)
@@ -49,10 +52,20 @@ class Running:
 
 
 class _First:
-    """Tells the first test that fails."""
+    """Tells the first test that fails, or takes too long."""
 
-    def __init__(self, end: int) -> None:
+    def __init__(self, end: int, tests: dict[str, float]) -> None:
         self.end = end
+        self._tests = tests
+        signal.signal(signal.SIGPROF, self._too_long)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        signal.setitimer(signal.ITIMER_PROF, MORE + SLOWER * self._tests.get(nodeid, 0.0))
+
+    def _too_long(self, number: int, frame: object) -> None:
+        os.write(self.end, b"time")
+        os._exit(1)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed:
@@ -61,14 +74,14 @@ class _First:
 
 
 def start(
-    path: Path, name: str, changed: ast.FunctionDef | None, tests: list[str], seconds: float
+    path: Path, name: str, changed: ast.FunctionDef | None, tests: dict[str, float]
 ) -> Running:
-    """Begin to try a mutant with tests that take so long otherwise; None tries no change."""
+    """Begin to try a mutant with tests and their seconds; None tries no change."""
     ours, theirs = os.pipe()
     child = os.fork()
     if child:
         os.close(theirs)
-        return Running(child, ours, time.monotonic() + SLOWER * seconds + MORE)
+        return Running(child, ours, time.monotonic() + FOREVER)
     code = 3
     try:
         nowhere = os.open(os.devnull, os.O_RDWR)
@@ -76,7 +89,7 @@ def start(
             os.dup2(nowhere, stream)
         if changed is not None:
             put(path, name, changed)
-        code = int(pytest.main([*QUIET, *tests], plugins=[_First(theirs)]))
+        code = int(pytest.main([*QUIET, *tests], plugins=[_First(theirs, tests)]))
     except BaseException as error:
         os.write(theirs, repr(error).encode()[:3000])
     finally:

@@ -40,6 +40,8 @@ def cheapest(corners, n, near, goal, z, below, part, point):
 @compiled
 def _nearest(corners, n, goal, z, below, part, point):
     """Least of the largest finger's distance from the goal: cuts through the middle."""
+    if n == 0:
+        return np.inf
     left = np.empty((len(part), 4))
     left[:n] = corners[:n]
     row = np.empty(5)

@@ -1,0 +1,425 @@
+"""Convex polygons, where a finger may be in a cell, and which pieces are near: by shapely."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+import shapely
+
+from icage.cells.free_space import FreeSpace, search
+from icage.cells.kernels.convex_polygon import (
+    Line,
+    area,
+    beyond,
+    centroid,
+    clip,
+    hull,
+    mean,
+    new_corners,
+)
+from icage.cells.kernels.cut import boundary_point, cut, other_rows
+from icage.cells.kernels.facet import MAX_BASE
+from icage.cells.kernels.near import Hand, cells_near, pieces_near
+from icage.cells.kernels.plateau import translations
+from icage.cells.kernels.region import _covered, all_sandwiches
+from icage.cells.kernels.sandwich import CORNERS, sandwich
+from icage.cells.kernels.shrink import pivot, sees
+from icage.hand import HandShape
+from icage.kernels.locate import build_buckets, cells_of, depth_inside, locate, nodes_of
+from icage.outline import Outline
+from tests.oracles.geometry import Floats
+from tests.oracles.targets import random_target
+
+pytestmark = pytest.mark.usefixtures("plain")
+
+
+def convex(rng: np.random.Generator, most: int = 9) -> Floats:
+    n = int(rng.integers(3, most))
+    angle = np.sort(2.0 * np.pi * (np.arange(n) + 0.8 * rng.random(n)) / n)
+    return np.column_stack([2.0 * np.cos(angle) + 5.0, np.sin(angle) - 3.0])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_convex_polygons_are_shapelys(seed: int) -> None:
+    rng = np.random.default_rng([seed, 1])
+    ring = convex(rng)
+    n, x, y = len(ring), *ring.T.copy()
+    known = shapely.Polygon(ring)
+    assert area(x, y, n) == pytest.approx(known.area)
+    assert tuple(centroid(x, y, n)) == pytest.approx(known.centroid.coords[0])
+    assert mean(x, n - 1) == pytest.approx(x[: n - 1].mean())
+    p = rng.normal(size=2) * [3.0, 2.0] + [5.0, -3.0]
+    more = known.union(shapely.Point(p)).convex_hull.area - known.area
+    assert beyond(*p, x, y, n) == pytest.approx(more, abs=1e-12)
+    polygon, room = new_corners(n + 6), new_corners(n + 6)
+    polygon.x[:n], polygon.y[:n], polygon.done[:n] = x, y, True
+    g, c = rng.normal(size=2), ring.mean(axis=0)
+    e = float(rng.normal()) * 0.3
+    m = clip(polygon, n, Line(e + 0.01, *g, *c, 1.0), 0.01, room)
+    way = 20.0 * np.array([-g[1], g[0]])
+    start = c - e * g / (g @ g)
+    half = shapely.Polygon([start - way, start - way - 20 * g, start + way - 20 * g, start + way])
+    kept = np.column_stack([polygon.x[:m], polygon.y[:m]])
+    left = known & half
+    if left.is_empty:
+        assert m == 0
+    else:
+        assert shapely.Polygon(kept).symmetric_difference(left).area < 1e-9
+        old = {tuple(q) for q in ring}
+        assert [tuple(q) in old for q in kept] == polygon.done[:m].tolist()
+
+
+def test_a_polygon_of_no_area_has_the_mean_of_its_corners_for_a_middle() -> None:
+    x, y = np.array([1.0, 2.0, 6.0]), np.array([2.0, 4.0, 12.0])
+    assert tuple(centroid(x, y, 3)) == pytest.approx((3.0, 6.0))
+    assert area(x, y, 3) == 0.0
+    assert area(x, y, 2) == 0.0
+    assert tuple(centroid(x, y, 1)) == (1.0, 2.0)
+
+
+@pytest.mark.parametrize("kind", ["any", "grid", "line", "one"])
+def test_a_hull_is_shapelys(kind: str) -> None:
+    rng = np.random.default_rng(len(kind))
+    for _ in range(15):
+        n = int(rng.integers(3, 14))
+        points = rng.normal(size=(n, 2)) if kind == "any" else rng.integers(0, 4, (n, 2)) * 1.0
+        if kind == "line":
+            points[:, 1] = 2.0 * points[:, 0] + 1.0
+        if kind == "one":
+            points[:] = points[0]
+        ox, oy = np.full(2 * n + 2, np.nan), np.full(2 * n + 2, np.nan)
+        m = hull(points[:, 0].copy(), points[:, 1].copy(), n, ox, oy)
+        found = np.column_stack([ox[:m], oy[:m]])
+        known = shapely.MultiPoint(points).convex_hull
+        assert {tuple(p) for p in found} == set(known.coords if known.geom_type != "Polygon"
+                                                else known.exterior.coords)  # fmt: skip
+        if known.geom_type == "Polygon":
+            assert len(found) == len(known.exterior.coords) - 1
+            assert area(*found.T.copy(), m) == pytest.approx(known.area)
+
+
+class Setting:
+    """A random object with its pieces and a hand on it."""
+
+    def __init__(self, seed: int, size: float = 1.0) -> None:
+        self.rng = np.random.default_rng([seed, 23])
+        target = random_target(self.rng, ["star", "random", "tool", "comb"][seed % 4])
+        outline = Outline(size * target.vertices)
+        self.space = FreeSpace.around(outline, HandShape.from_contacts(size * target.contacts))
+        self.pieces, self.z, self.size = self.space.pieces, self.space.z, outline.diameter
+        self.ring = outline.vertices - self.space.origin
+        at = (size * target.contacts - self.space.origin) @ [1.0, 1j]
+        self.hand = Hand(at[0].real, at[0].imag, (at[1] - at[0]).real, (at[1] - at[0]).imag)
+        p = self.pieces
+        self.corners = [
+            np.column_stack([p.x[v], p.y[v]])
+            for v in (p.slot_vertex[p.ptr[k] : p.ptr[k + 1]] for k in range(len(p.ptr) - 1))
+        ]
+        self.shapes = [shapely.Polygon(c) for c in self.corners]
+        self.fingers = complex(*self.hand[:2]) + complex(*self.hand[2:]) * (self.z @ [1.0, 1j])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_pieces_near_a_point_and_cells_near_a_hand(seed: int) -> None:
+    s = Setting(seed)
+    for _ in range(15):
+        p = s.ring[s.rng.integers(len(s.ring))] + 0.1 * s.rng.normal(size=2)
+        reach = 10.0 ** s.rng.uniform(-4, -0.5)
+        apart = [shape.distance(shapely.Point(p)) for shape in s.shapes]
+        known = [k for k, gap in enumerate(apart) if gap <= reach]
+        assert pieces_near(s.pieces, *p, reach).tolist() == known
+    hand = s.hand
+    for reach in (1e-9 * s.size, 0.05 * s.size):
+        near = [[k for k, shape in enumerate(s.shapes)
+                 if shape.distance(shapely.Point(f.real, f.imag)) <= reach]
+                for f in s.fingers]  # fmt: skip
+        known = [[a, b, c] for a in near[0] for b in near[1] for c in near[2]]
+        cells, total = cells_near(s.pieces, s.z, hand, reach, 10**6)
+        assert total == len(known)
+        assert cells.tolist() == known
+        none, total = cells_near(s.pieces, s.z, hand, reach, len(known) - 1)
+        assert (len(none), total) == (0, len(known))
+        assert len(cells_near(s.pieces, s.z, hand, reach, len(known))[0]) == len(known)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_finger_just_inside_the_object_is_near_the_pieces_outside(seed: int) -> None:
+    s = Setting(seed)
+    inside = s.ring.mean(axis=0)  # towards it from an edge's middle
+    edge = 0.5 * (s.ring[0] + s.ring[1])
+    out = np.array([s.ring[1][1] - s.ring[0][1], s.ring[0][0] - s.ring[1][0]])
+    at = edge - 30e-6 * out / np.hypot(*out)
+    del inside
+    hand = Hand(*at, 0.0, 0.0)
+    cells, _ = cells_near(s.pieces, s.z, hand, 1e-6, 10**6)
+    assert cells.tolist() == cells_near(s.pieces, s.z, hand, 1e-4, 10**6)[0].tolist()
+    assert len(cells) > 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("side", [1, 3, 16])
+def test_the_piece_of_a_point(seed: int, side: int) -> None:
+    s = Setting(seed)
+    low = s.ring.min(axis=0) - 0.2
+    size = float((np.ptp(s.ring, axis=0).max() + 0.4) / side)
+    buckets = build_buckets(s.pieces, *low, size, side)
+    points = low + s.rng.uniform(-0.2, 1.2, (60, 2)) * side * size
+    inside = np.array([[shape.covers(shapely.Point(p)) for shape in s.shapes] for p in points])
+    found = [locate(s.pieces, buckets, *p, 1e-9) for p in points]
+    for row, k in zip(inside, found, strict=True):
+        assert (k >= 0) == row.any()
+        assert k < 0 or row[k]
+    fingers = points.reshape(20, 3, 2)
+    assert (
+        cells_of(s.pieces, fingers, buckets, 1e-9).tolist() == np.reshape(found, (20, 3)).tolist()
+    )
+    assert (depth_inside(s.ring, points, 0.0) > 0.0).tolist() == [
+        shapely.Polygon(s.ring).contains(shapely.Point(p)) for p in points
+    ]
+    gap = shapely.distance(shapely.LinearRing(s.ring), shapely.points(points))
+    assert np.abs(depth_inside(s.ring, points, 0.0)) == pytest.approx(gap, abs=1e-12)
+    listed = [set(buckets.items[buckets.start[q] : buckets.start[q + 1]]) for q in range(side**2)]
+    for i in range(side):
+        for j in range(side):
+            corner = low + size * np.array([i, j])
+            square = shapely.box(*corner, *(corner + size))
+            for k, shape in enumerate(s.shapes):
+                if shape.intersection(square).area > 1e-9:
+                    assert k in listed[i * side + j]
+    # a point outside of all pieces by less than the tolerance is in the nearest
+    edge = 0.5 * (s.ring[0] + s.ring[1])
+    out = np.array([s.ring[1][1] - s.ring[0][1], s.ring[0][0] - s.ring[1][0]])
+    p = edge - 1e-5 * out / np.hypot(*out)
+    assert locate(s.pieces, buckets, *p, 1e-6) == -1
+    assert s.shapes[locate(s.pieces, buckets, *p, 1e-4)].distance(shapely.Point(p)) < 2e-5
+    # of two pieces the one that it is deeper in
+    for k, shape in enumerate(s.shapes):
+        c = shape.centroid
+        assert locate(s.pieces, buckets, c.x, c.y, 10.0) == k
+
+
+def test_nodes_of_cells() -> None:
+    s = Setting(1)
+    start = cells_near(s.pieces, s.z, s.hand, 1e-9, 10**6)[0][0]
+    found = search(s.space, start, 0.0, limit=40)
+    m = len(s.pieces.ptr) - 1
+    known = {tuple(n): k for k, n in enumerate(found.cells.tolist())}
+    cells = np.concatenate([found.cells, s.rng.integers(-1, m, (60, 3))])
+    for inside in (len(found.nodes), 7):
+        told = nodes_of(found.keys, found.values, cells, m, inside)
+        for cell, node in zip(cells.tolist(), told, strict=True):
+            k = known.get(tuple(cell), -1)
+            assert node == (k if k < inside else -1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_translations_of_a_hand_in_a_cell_are_what_the_pieces_share(seed: int) -> None:
+    s = Setting(seed, 1.0 if seed % 2 else 30.0)
+    cells, _ = cells_near(s.pieces, s.z, s.hand, 0.05 * s.size, 10**6)
+    w = complex(*s.hand[2:]) * 1.1
+    full = 0
+    for cell in cells[:20]:
+        shift = [w * complex(*z) for z in s.z]
+        known = s.shapes[cell[0]]
+        for k in range(3):
+            moved = shapely.affinity.translate(s.shapes[cell[k]], -shift[k].real, -shift[k].imag)
+            known = known & moved if k else moved
+        corners = translations(s.pieces, s.z, cell, w.real, w.imag)
+        if known.area > 1e-6 * s.size**2:
+            full += 1
+            assert shapely.Polygon(corners).symmetric_difference(known).area < 1e-9 * s.size**2
+        elif known.is_empty:
+            assert len(corners) < 3 or shapely.Polygon(corners).area < 1e-9 * s.size**2
+    assert full > 0 or seed == 3
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_fingers_see_each_other_where_no_edge_is_between(seed: int) -> None:
+    s = Setting(seed, 1.0 if seed % 2 else 50.0)
+    solid = shapely.Polygon(s.ring)
+    tol = 1e-9 * s.size
+    low, span = s.ring.min(axis=0) - 0.2 * s.size, np.ptp(s.ring, axis=0) + 0.4 * s.size
+    points = [p for p in low + s.rng.random((60, 2)) * span if not solid.contains(shapely.Point(p))]
+    points += [0.5 * (a + b) for a, b in zip(s.ring, np.roll(s.ring, -1, axis=0), strict=True)]
+    points += list(s.ring)
+    barred = np.zeros(3, np.int64)
+    told = [0, 0]
+    for _ in range(250):
+        u, v = (points[k] for k in s.rng.integers(len(points), size=2))
+        known = shapely.LineString([u, v]).intersection(solid).length < 10 * tol
+        found = sees(s.pieces, *u, *v, tol, barred, 1)
+        deep = shapely.LineString([u, v]).intersection(solid.buffer(-1e-6 * s.size)).length
+        if found:
+            assert deep == 0.0
+        if known and solid.distance(shapely.LineString([u, v])) > 1e-6 * s.size:
+            assert found
+        told[int(found)] += 1
+        assert barred[0] == barred[2] == 0
+    assert min(told) > 10
+    edge = s.ring[:2]
+    along = [edge[0] + t * (edge[1] - edge[0]) for t in (0.3, 0.7)]
+    assert sees(s.pieces, *along[0], *along[1], tol, barred, 0)
+    assert sees(s.pieces, *edge[0], *edge[0], tol, barred, 0)
+    for _ in range(60):
+        d, w = (
+            complex(*points[s.rng.integers(len(points))]),
+            s.size * complex(*s.rng.normal(size=2)),
+        )
+        at = d + w * (s.z @ [1.0, 1j])
+        ends = [np.array([p.real, p.imag]) for p in at]
+        if any(solid.contains(shapely.Point(p)) for p in ends):
+            continue
+        pairs = {frozenset(ij): sees(s.pieces, *ends[ij[0]], *ends[ij[1]], tol, np.zeros(3, int), 0)
+                 for ij in combinations(range(3), 2)}  # fmt: skip
+        able = [k for k in range(3) if all(seen for pair, seen in pairs.items() if k in pair)]
+        found = pivot(s.pieces, s.z, d.real, d.imag, w.real, w.imag, tol, barred)
+        assert (found in able) if able else found == -1
+
+
+def least_openings(s: Setting, cell: np.ndarray, i: int, points: Floats) -> Floats:
+    """Least |w| (n,) that keeps the others in their pieces with finger i at points; inf: none.
+
+    By trying every corner and every foot of the half planes of w.
+    """
+    rows, level = [], []
+    z = s.z @ [1.0, 1j]
+    p = s.pieces
+    for f in range(3):
+        if f == i:
+            continue
+        u = z[f] - z[i]
+        for slot in range(p.ptr[cell[f]], p.ptr[cell[f] + 1]):
+            n = complex(p.normal_x[slot], p.normal_y[slot])
+            v = p.slot_vertex[slot]
+            g = n * np.conj(u)
+            rows.append([g.real, g.imag])
+            level.append([n.real * p.x[v] + n.imag * p.y[v], n.real, n.imag])
+    g, offset = np.array(rows), np.array(level)
+    found = np.full(len(points), np.inf)
+    for k, q in enumerate(points):
+        c = offset[:, 0] - offset[:, 1:] @ q
+        tries = [np.zeros(2), *(g * (c / (g * g).sum(axis=1))[:, None])]
+        for a, b in combinations(range(len(g)), 2):
+            det = g[a, 0] * g[b, 1] - g[a, 1] * g[b, 0]
+            if abs(det) > 1e-12:
+                tries.append(np.array([c[a] * g[b, 1] - c[b] * g[a, 1],
+                                       g[a, 0] * c[b] - g[b, 0] * c[a]]) / det)  # fmt: skip
+        w = np.array(tries)
+        held = (w @ g.T >= c - 1e-9 * s.size).all(axis=1)
+        if held.any():
+            found[k] = np.hypot(*w[held].T).min()
+    return found
+
+
+def cell_and_start(s: Setting) -> tuple[np.ndarray, Floats, float]:
+    """A cell round the target, where finger 2 is in it, and a level above the hand's."""
+    hand = Hand(*s.hand[:2], 1.0 * s.hand.w_x, s.hand.w_y)
+    cells, _ = cells_near(s.pieces, s.z, hand, 1e-9 * s.size, 10**6)
+    cell = cells[s.rng.integers(len(cells))]
+    return cell, np.array([s.fingers[1].real, s.fingers[1].imag]), 1.2 * abs(complex(*hand[2:]))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_cuts_and_boundary_points_of_where_a_finger_may_be(seed: int) -> None:
+    s = Setting(seed, 1.0 if seed % 2 else 25.0)
+    cell, start, level = cell_and_start(s)
+    rows = np.empty((MAX_BASE, 5))
+    n = other_rows(s.pieces, s.z, 1, 2, cell[2], rows, 0)
+    n = other_rows(s.pieces, s.z, 1, 0, cell[0], rows, n)
+    points = start + 0.5 * s.size * s.rng.normal(size=(25, 2)) * s.rng.random((25, 1))
+    sizes = least_openings(s, cell, 1, points)
+    more = start + 0.2 * s.size * s.rng.normal(size=(60, 2)) * s.rng.random((60, 1)) ** 2
+    held = more[least_openings(s, cell, 1, more) <= level]
+    told = [0, 0]
+    for p, size in zip(points, sizes, strict=True):
+        if abs(size - level) < 1e-6 * s.size:
+            continue
+        outside, line = cut(rows, n, *p, level)
+        assert outside == (size > level)
+        told[int(outside)] += 1
+        end = boundary_point(rows, n, *start, *p, level, 1e-11 * s.size)
+        at = np.array([end.x, end.y])
+        assert end.inside == (not outside)
+        if not outside:
+            assert at.tolist() == p.tolist()
+            continue
+        assert line.e > 0.0
+        assert (line.c_x, line.c_y) == tuple(p)
+        for q in held:
+            assert line.e + line.g_x * (q[0] - p[0]) + line.g_y * (q[1] - p[1]) <= 1e-8 * s.size
+        way = p - start
+        t = float((at - start) @ way / (way @ way))
+        assert at == pytest.approx(start + t * way, abs=1e-9 * s.size)
+        assert 0.0 <= t < 1.0
+        inner, outer = least_openings(s, cell, 1, start + np.array([[t - 1e-6], [t + 1e-6]]) * way)
+        assert t == 0.0 or inner <= level * (1.0 + 1e-6)
+        assert outer >= level * (1.0 - 1e-6)
+    assert told[1] > 5
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_sandwich_holds_what_it_says(seed: int) -> None:
+    """Corners of the inner polygon are in the set, drawn points of the set are in the outer one,
+    and their areas differ by no more than asked."""
+    s = Setting(seed, 1.0 if seed % 2 else 25.0)
+    cell, start, level = cell_and_start(s)
+    inner, outer = np.empty((2, CORNERS)), np.empty((2, CORNERS))
+    enough = 1e-5 * s.size**2
+    h, m = sandwich(s.pieces, s.z, 1, cell, level, start, enough, inner, outer)
+    piece = s.shapes[cell[1]].buffer(1e-9 * s.size)
+    points = start + 0.3 * s.size * s.rng.normal(size=(60, 2)) * s.rng.random((60, 1)) ** 2
+    points = points[[piece.contains(shapely.Point(p)) for p in points]]
+    held = points[least_openings(s, cell, 1, points) <= level * (1.0 - 1e-9)]
+    if m < 3:
+        assert len(held) <= 1
+        return
+    around = shapely.Polygon(outer[:, :m].T).buffer(1e-8 * s.size)
+    assert all(around.contains(shapely.Point(p)) for p in held)
+    corners = inner[:, :h].T
+    assert (least_openings(s, cell, 1, corners) <= level * (1.0 + 1e-7)).all()
+    assert all(piece.contains(shapely.Point(p)) for p in corners)
+    gap = area(*outer, m) - area(*inner, h)
+    assert -1e-12 * s.size**2 <= gap <= 1.01 * enough
+    if h >= 3:
+        assert around.contains(shapely.Polygon(corners))
+
+
+def test_sandwiches_that_an_earlier_one_covers_are_left_out() -> None:
+    s = Setting(3)
+    cells, _ = cells_near(s.pieces, s.z, s.hand, 1e-9, 10**6)
+    _, start, level = cell_and_start(s)
+    points = np.tile(start, (2 * len(cells), 1))
+    once = all_sandwiches(s.pieces, s.z, 1, cells, points, level, 1e-5, 1e-9)
+    twice = all_sandwiches(
+        s.pieces, s.z, 1, np.concatenate([cells, cells]), points, level, 1e-5, 0.01
+    )
+    assert len(once.inner_counts) > 0
+    assert once.inner_counts.sum() == len(once.inner)
+    assert once.outer_counts.sum() == len(once.outer)
+    assert len(twice.inner_counts) <= len(once.inner_counts)
+    whole, again = (
+        shapely.union_all([
+            shapely.Polygon(p)
+            for p in np.split(one.outer, np.cumsum(one.outer_counts)[:-1])
+        ])
+        for one in (once, twice)
+    )  # fmt: skip
+    assert whole.symmetric_difference(again).area < 0.1 * whole.area
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    store = np.concatenate([square[:2], square + 5.0, 2.0 * square - 0.5])
+    first, count = np.array([0, 2, 6]), np.array([2, 4, 4])
+
+    def covered(outer: Floats, *held: int, slack: float = 1e-9) -> bool:
+        rows = np.array(held, np.int64)
+        return _covered(outer.T.copy(), len(outer), store, first, count, rows, len(rows), slack)
+
+    assert covered(square, 0, 1, 2)
+    assert not covered(square, 0, 1)
+    assert not covered(square)
+    assert not covered(square + [0.6, 0.0], 2)
+    assert not covered(square - [0.0, 0.6], 2)
+    assert covered(square + [0.6, 0.0], 2, slack=0.11)
+    assert not covered(square + [0.6, 0.0], 2, slack=0.09)
+    assert covered(square + 5.0, 2, 1)
