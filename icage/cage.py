@@ -287,7 +287,7 @@ class Cage(Value):
 
     @property
     def sigma_guaranteed(self) -> float | None:
-        """[unit] Below it closing ends in the target: the least of sigma_first, ``shelf``, ``wedge``.
+        """[unit] Below it closing ends in the target: least of sigma_first, ``shelf``, ``wedge``.
 
         None if closing does so however far the hand opens; sigma_0 if nothing is guaranteed.
         """

@@ -28,6 +28,7 @@ from icage.cells.kernels.columns import (
 from icage.cells.kernels.facet import middles_on_facets
 from icage.cells.kernels.search import Explored, explore
 from icage.cells.kernels.tree import Births, Merges, births, find_at, merge, visited_births
+from icage.kernels.locate import nodes_of
 from icage.tolerance import DEPTH_CUT
 
 
@@ -76,21 +77,29 @@ def ends_below(free_space: FreeSpace, cells: IntArray, top: float, depth: float)
 
     Minima count that are deeper than ``depth`` [unit].
     """
-    pieces, z = free_space.pieces, free_space.z
-    cells = np.ascontiguousarray(cells)
-    least = births(pieces, z, cells, free_space.cap, free_space.worst).value[:, BIRTH_SIGMA]
-    seen: set[tuple[int, ...]] = set()
-    for row in np.argsort(least, kind="stable").tolist():
-        if not least[row] < top:
-            return
-        if tuple(cells[row].tolist()) in seen:
-            continue
-        found = explore(
-            pieces, z, cells[row], least[row], free_space.cap, free_space.worst, top, CELL_LIMIT,
-            np.inf,
-        )  # fmt: skip
-        seen.update(tuple(cell) for cell in found.nodes[:, : len(z)].tolist())
-        yield _ends(free_space, found, float(least[row]), top, depth)
+    left = np.ascontiguousarray(cells)
+    # the first is the target's own, which as a rule leads to all the others
+    for most in (1, len(left)):
+        some = left[:most]
+        least = _least(free_space, some)
+        for row in np.argsort(least, kind="stable").tolist():
+            if not least[row] < top:
+                break
+            if not (left == some[row]).all(axis=1).any():
+                continue
+            found = explore(
+                free_space.pieces, free_space.z, some[row], least[row], free_space.cap,
+                free_space.worst, top, CELL_LIMIT, np.inf,
+            )  # fmt: skip
+            total, count = free_space.pieces.total, len(found.nodes)
+            left = left[nodes_of(found.keys, found.values, left, total, count) < 0]
+            yield _ends(free_space, found, float(least[row]), top, depth)
+
+
+def _least(free_space: FreeSpace, cells: IntArray) -> FloatArray:
+    """Least sigma (n,) of cells."""
+    found = births(free_space.pieces, free_space.z, cells, free_space.cap, free_space.worst)
+    return found.value[:, BIRTH_SIGMA]
 
 
 def _ends(free_space: FreeSpace, found: Explored, least: float, top: float, depth: float) -> Ends:
@@ -134,6 +143,4 @@ def _bottom(
         pieces, free_space.z, found.nodes[beside], born.where[beside, BORN_FINGER],
         born.where[beside, BORN_SLOT], born.value[beside, BIRTH_WX:],
     )  # fmt: skip
-    return Bottom(
-        float(low[node]), hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
-    )
+    return Bottom(float(low[node]), hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3])
