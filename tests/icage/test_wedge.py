@@ -116,28 +116,23 @@ def test_the_search_does_not_rank_it(name: str) -> None:
     assert len(planned_grasps(outline, asked.radius, [contacts], Wanted(aim="cage"), 1).cages) == 1
 
 
-@pytest.mark.parametrize("asked", [SLANTED, flush(0.2), flush(0.0)])
-def test_fingers_a_hair_thicker_end_elsewhere(asked: Asked) -> None:
+@pytest.mark.parametrize("change", [1e-6, 1e-7])
+def test_fingers_a_hair_thicker_end_elsewhere(change: float) -> None:
     """By an exact closing that knows no cells, from placements of the target's component."""
-    cage = planned(asked)
-    wedge = wedge_in(cage)
-    rows = draw_starts(cage, "cage", 6, np.random.default_rng(1)).placements
-    ring, ended = Ring.of(cage.outline.vertices), 0
-    for row in rows[rows[:, 3] < unlimited(cage)]:
+    cage = planned(SLANTED)
+    size = cage.outline.diameter
+    rows = draw_starts(cage, "cage", 3, np.random.default_rng(1)).placements
+    for row in rows:
         w = row[3] * np.exp(1j * row[2])
         at = np.array([row[0], row[1], w.real, w.imag])
-        end = close_hand(ring, cage.hand.z, at, asked.radius + wedge.fit)
-        off = np.hypot(*(end.contacts.mean(axis=0) - cage.contacts.mean(axis=0)))
-        assert not end.escaped
-        assert off > 0.005 * cage.outline.diameter
-        ended += 1
-    assert ended >= 2
-
-
-def unlimited(cage: Cage) -> float:
-    """What would be guaranteed if there were no wedge."""
-    levels = (cage.sigma_first, None if cage.shelf is None else cage.shelf.sigma)
-    return min(level for level in levels if level is not None)
+        ends = [
+            close_hand(Ring.of(cage.outline.vertices), cage.hand.z, at, cage.finger_radius + by)
+            for by in (-change * size, change * size)
+        ]
+        off = [np.hypot(*(end.contacts - cage.contacts).mean(axis=0)) / size for end in ends]
+        assert off[0] < 0.005
+        assert off[1] > 0.1
+        assert ends[1].sigma > 1.4 * cage.sigma_0
 
 
 def test_force_is_how_fast_sigma_0_grows_with_the_radius() -> None:
@@ -146,7 +141,8 @@ def test_force_is_how_fast_sigma_0_grows_with_the_radius() -> None:
     sizes: list[float] = []
     for by in (-1e-7, 1e-7):
         case = icage.Case("yields", "m", cage.outline, cage.finger_radius, cage.contacts)
-        sizes.append(icage.regrasp(case, finger_radius=cage.finger_radius + by).sigma_0)
+        other = icage.regrasp(case, finger_radius=cage.finger_radius + by).contacts
+        sizes.append(float(np.hypot(*(other[1] - other[0]))))
     assert wedge.force == pytest.approx((sizes[1] - sizes[0]) / 2e-7, rel=0.01)
     assert wedge.shift is not None
     assert wedge.shift > 10.0
@@ -159,7 +155,7 @@ def test_a_thin_way_out_caps_the_guaranteed_set_where_it_opens() -> None:
     assert cage.sigma_first is not None
     assert cage.sigma_0 < wedge.sigma < 0.9 * cage.sigma_first
     thinner = plan(cage.outline, regrasped(cage, -wedge.fit), cage.finger_radius - wedge.fit)
-    assert wedge.sigma == pytest.approx(thinner.sigma_max, rel=1e-6)
+    assert wedge.sigma == pytest.approx(thinner.sigma_max, rel=1e-5)
     starts = draw_starts(cage, "guaranteed", 20, np.random.default_rng(0)).placements
     assert (starts[:, 3] < wedge.sigma).all()
 
