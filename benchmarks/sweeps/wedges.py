@@ -6,7 +6,8 @@ Objects of ten families, half of them with edges in two or three directions only
 each, points and discs. From placements of the guaranteed set an exact closing without friction that
 knows no cells (``tests.oracles.planar_closing``) is made with fingers 1e-5 to 1e-8 of the diameter
 thinner and thicker; each has to end next to the target. Of a wedge some should not, from the set
-that would be guaranteed without it. Points cannot be thinner: there the outline shrinks.
+that would be guaranteed without it. For points the outline shrinks or grows: a closing rests on the
+tip of a vertex that is round with so small a radius.
 """
 
 from __future__ import annotations
@@ -99,9 +100,9 @@ def end_of(cage: Cage, row: FloatArray, change: float, eagerness: float) -> Floa
     """Where a hand closes to (3, 2) with fingers ``change`` [diameter] thicker; None: nowhere."""
     outline, by = cage.outline, change * cage.outline.diameter
     ring, radius = outline.vertices, cage.finger_radius + by
-    if radius < 0.0:
-        smaller = outline.polygon.buffer(radius, join_style="mitre", mitre_limit=20.0)
-        ring, radius = shapely.get_coordinates(smaller.exterior)[:-1], 0.0
+    if cage.finger_radius == 0.0:
+        other = outline.polygon.buffer(by, join_style="mitre", mitre_limit=20.0)
+        ring, radius = shapely.get_coordinates(other.exterior)[:-1], 0.0
     w = row[3] * np.exp(1j * row[2])
     q = np.array([row[0], row[1], w.real, w.imag])
     try:
