@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from icage.placing.best import BestPlacement, place
     from icage.planner import plan
     from icage.shelf import Shelf
+    from icage.wedge import Wedge, WedgeKind
 
 __version__ = "0.1.0"
 
@@ -62,6 +63,8 @@ _WHERE = {
     "Puncture": "icage.cage",
     "Shelf": "icage.shelf",
     "Sublevels": "icage.minima",
+    "Wedge": "icage.wedge",
+    "WedgeKind": "icage.wedge",
     "friction_curve": "icage.friction.curve",
     "friction_levels": "icage.friction.levels",
     "load": "icage.formats.load",
@@ -95,6 +98,8 @@ __all__ = [
     "Puncture",
     "Shelf",
     "Sublevels",
+    "Wedge",
+    "WedgeKind",
     "friction_curve",
     "friction_levels",
     "load",

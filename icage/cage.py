@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from icage.cells.work import CageWork
     from icage.friction.levels import FrictionLevel, JamTolerance
     from icage.shelf import Shelf
+    from icage.wedge import Wedge
 
 
 class CageStatus(StrEnum):
@@ -269,12 +270,33 @@ class Cage(Value):
         return cast("Shelf | None", self.work.remembered["shelf"])
 
     @property
-    def sigma_guaranteed(self) -> float | None:
-        """[unit] Below it closing ends in the target: sigma_first, or the ``shelf`` below it.
+    def wedge(self) -> Wedge | None:
+        """Why, and from which size on, closing ends in the target only by an exact fit.
 
-        None if closing does so however far the hand opens.
+        Fingers 1e-5 of the diameter thinner or thicker would end elsewhere, or the contacts press
+        25 times as hard as the motor pulls. None where nothing of the guaranteed set hangs on that,
+        and for cages planned by the contact space, which does not look.
         """
-        return self.sigma_first if self.shelf is None else self.shelf.sigma
+        if self.work is None:
+            return None
+        if "wedge" not in self.work.remembered:
+            from icage.wedge import wedge_of
+
+            self.work.remembered["wedge"] = wedge_of(self, self.work)
+        return cast("Wedge | None", self.work.remembered["wedge"])
+
+    @property
+    def sigma_guaranteed(self) -> float | None:
+        """[unit] Below it closing ends in the target: least of sigma_first, ``shelf``, ``wedge``.
+
+        None if closing does so however far the hand opens; sigma_0 if nothing is guaranteed.
+        """
+        ends = (
+            self.sigma_first,
+            None if self.shelf is None else self.shelf.sigma,
+            None if self.wedge is None else self.wedge.sigma,
+        )
+        return min((sigma for sigma in ends if sigma is not None), default=None)
 
     def friction(self, mu: float, tolerance: JamTolerance | None = None) -> FrictionLevel:
         """Below which level closing ends near the target although the fingers rub.

@@ -97,6 +97,12 @@ def has_rest(cage: Cage) -> bool:
     return first < top or any(grasp.sigma < top for grasp in cage.grasps[1:])
 
 
+def has_guaranteed(cage: Cage) -> bool:
+    """Whether anything is guaranteed: of a wedge that only an exact fit holds nothing is."""
+    first = cage.sigma_guaranteed
+    return cage.status != "not_a_cage" and (first is None or first > cage.sigma_0)
+
+
 def same_set(cage: Cage, which: StartSet) -> StartSet:
     """The whole cage is its guaranteed set if it has no rest."""
     return "guaranteed" if which == "cage" and not has_rest(cage) else which
@@ -129,6 +135,11 @@ def draw_starts(
     which = same_set(cage, which)
     if cage.status == "not_a_cage" or (which == "rest" and not has_rest(cage)):
         raise SamplingError(f"this cage has no {which} set of placements")
+    if which == "guaranteed" and not has_guaranteed(cage):
+        raise SamplingError(
+            "nothing of this cage is guaranteed: closing ends in the target by an exact fit only "
+            "(a wedge)"
+        )
     box = Box.around(cage, which) if box is None else box
     found: list[FloatArray] = []
     have, tried, limit = 0, 0, TRIES_PER_START * count

@@ -1,10 +1,10 @@
-"""Closings on rectilinear objects, where parallel edges make shelves: ``icage.shelf`` in physics.
+"""Closings on rectilinear objects, whose parallel edges make shelves and wedges, in physics.
 
     python -m benchmarks.sweeps.shelves --objects 60 --trials 40
 
 Unions of boxes with whole coordinates, disc fingers of 0.1 to 0.3, the five best grasps of each.
 Every closing from the guaranteed set has to end in the target; those that do not are printed with
-the cage, and so is every cage with a shelf. MuJoCo with the usual settings, no friction.
+the cage, and so is every cage with a shelf or a wedge. MuJoCo with the usual settings, no friction.
 """
 
 from __future__ import annotations
@@ -63,9 +63,12 @@ def main() -> int:
             total["closings"] += options.trials
             total["in the target"] += counts["target"]
             total["cages with a shelf"] += cage.shelf is not None
-            if cage.shelf is not None or counts["target"] < options.trials:
+            total["cages with a wedge"] += cage.wedge is not None
+            limited = cage.shelf is not None or cage.wedge is not None
+            if limited or counts["target"] < options.trials:
                 ends = {name: count for name, count in counts.items() if count}
-                print(f"{case.name}: {cage}, shelf {cage.shelf and cage.shelf.sigma}: {ends}")
+                limits = f"shelf {cage.shelf and cage.shelf.sigma}, wedge {cage.wedge}"
+                print(f"{case.name}: {cage}, {limits}: {ends}")
     print(dict(total))
     return int(total["in the target"] < total["closings"])
 

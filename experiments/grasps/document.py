@@ -9,6 +9,7 @@ from experiments.cases.free_gap import free_gap
 from icage.cage import Cage
 from icage.case import Case
 from icage.formats.case_json import GRASPS, object_document
+from icage.formats.plan_json import wedge_document
 from icage.grasps.planned import PlannedGrasps
 
 
@@ -36,6 +37,7 @@ def _entry(cage: Cage, score: float) -> dict[str, Any]:
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         "score": score,
+        **({} if cage.wedge is None else {"wedge": wedge_document(cage.wedge)}),
         "free_gap": free_gap(cage),
         "verdict": cage.status,
         "free_fingers": cage.grasps[0].free_fingers,

@@ -89,6 +89,8 @@ def _sentence(
         return "past the puncture the object is free: it was opened to sigma_max", BAD
     if widest >= (1.0 - _AT_LEVEL) * cage.sigma_max:
         return "opened to sigma_max: the cage breaks, the way out is open", BAD
+    if cage.wedge is not None and widest >= (1.0 - _AT_LEVEL) * cage.wedge.sigma:
+        return "still caged, but closing ends in the target by an exact fit only", INK
     if cage.sigma_first is not None and widest >= (1.0 - _AT_LEVEL) * cage.sigma_first:
         return "above sigma_first: still caged, but closing may end in another grasp", INK
     return "below sigma_first: closing can end only in the target grasp", INK

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Final
 
 import shapely
 
 from icage.cage import Cage, SearchLog
 from icage.cells.regions import FingerRegion
 from icage.shelf import Shelf
+from icage.wedge import Wedge, WedgeKind
 
 
 def plan_document(
@@ -32,6 +33,7 @@ def plan_document(
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         **({} if cage.shelf is None else {"shelf": _shelf(cage.shelf)}),
+        **({} if cage.wedge is None else {"wedge": wedge_document(cage.wedge)}),
         **(_brackets(cage) if cage.finger_radius > 0.0 else {}),
         "punctures": [
             {
@@ -65,6 +67,18 @@ def plan_document(
 
 def _shelf(shelf: Shelf) -> dict[str, Any]:
     return {"sigma": shelf.sigma, "contacts": shelf.contacts}
+
+
+def wedge_document(wedge: Wedge) -> dict[str, Any]:
+    """A wedge as in ``icage-plan/1``."""
+    return {
+        "sigma": wedge.sigma,
+        "kind": wedge.kind,
+        "fit": wedge.fit,
+        "force": wedge.force,
+        "shift": wedge.shift,
+        "contacts": wedge.contacts,
+    }
 
 
 def _search(log: SearchLog) -> dict[str, Any]:
@@ -121,9 +135,12 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
     if cage.status != "not_a_cage":
         ends = "closing ends only in the target"
         on_shelf = "" if cage.shelf is None else ", or stays on a shelf"
-        yield _level("sigma_first", cage.sigma_first, cage, ends + on_shelf)
+        exact = "" if cage.wedge is None else ", if all fits exactly"
+        yield _level("sigma_first", cage.sigma_first, cage, ends + on_shelf + exact)
         if cage.shelf is not None:
-            yield _level("shelf", cage.shelf.sigma, cage, f"{ends} (parallel edges)")
+            yield _level("shelf", cage.shelf.sigma, cage, f"{ends} (parallel edges){exact}")
+        if cage.wedge is not None:
+            yield _wedge_line(cage, cage.wedge, unit)
         yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")
         for puncture in cage.punctures:
             joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""
@@ -144,6 +161,23 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
         )
     for warning in cage.warnings:
         yield f"warning      {warning}"
+
+
+_WEDGED: Final = {
+    WedgeKind.THINNER: "fingers {fit:.2g} {unit} thinner may end elsewhere",
+    WedgeKind.THICKER: "fingers {fit:.2g} {unit} thicker may end elsewhere",
+    WedgeKind.YIELDS: "contacts press {force:.3g} times as hard as the motor, and the object "
+    "shifts {shift:.3g} times as far as they give",
+}
+
+
+def _wedge_line(cage: Cage, wedge: Wedge, unit: str) -> str:
+    why = _WEDGED[wedge.kind].format(
+        fit=wedge.fit, unit=unit, force=wedge.force or 0.0, shift=wedge.shift or 0.0
+    )
+    if wedge.sigma <= cage.sigma_0:
+        return f"wedge        closing ends in the target by an exact fit only: {why}"
+    return _level("wedge", wedge.sigma, cage, f"this hangs on no exact fit ({why})")
 
 
 def _fingers(cage: Cage, unit: str) -> str:

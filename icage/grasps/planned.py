@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -32,6 +33,10 @@ _OF_AN_IDEA = 4
 
 _APART = 3e-4
 """[diameter] ... further from each other than this."""
+
+
+WEDGED: Final = "a wedge: only an exact fit holds it"
+"""Why a cage is not ranked of which nothing is guaranteed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +116,8 @@ def _best_planned(
     planned, why = 0, ""
     for row in rows[:_TRIES_AT_A_PLACE]:
         cage = planned_or_why(outline, radius, alike[row])
+        if isinstance(cage, Cage) and wanted.aim != "cage" and _is_wedged(cage):
+            cage = WEDGED
         if isinstance(cage, str):
             why = why or cage
             continue
@@ -121,6 +128,11 @@ def _best_planned(
         if planned == (_OF_AN_IDEA if radius > 0.0 else 1):
             break
     return best, why
+
+
+def _is_wedged(cage: Cage) -> bool:
+    """Whether nothing is left of the guaranteed set if a hair is changed."""
+    return cage.wedge is not None and cage.wedge.sigma <= cage.sigma_0
 
 
 def planned_grasps_of_hand(

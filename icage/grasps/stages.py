@@ -246,6 +246,8 @@ class Stages:
         """The best grasps of discs again where their levels are better, and polished there."""
         best, size = _best(self.found), self.outline.diameter
         for polish in _POLISHES:
+            if not len(best):  # none was left between the last chords
+                return
             evaluator = self._evaluator(polish.segments)
             fine: list[Findings] = []
             self.finer.insert(0, fine)

@@ -149,6 +149,10 @@ def place(
     if not 0.0 < a_number(gap, "gap") < 1.0:
         raise InputError(f"gap {gap}; a number between 0 and 1 is needed")
     level = cage.sigma_guaranteed if mu == 0.0 else cage.friction(mu).sigma_first
+    if level is not None and level <= cage.sigma_0:
+        raise GraspError(
+            "no placement is good: closing ends in the target by an exact fit only (a wedge)"
+        )
     size = _opening(cage, level, opening)
     if not largest > cage.sigma_0:
         raise InputError(f"largest {largest:g}; above sigma_0 = {cage.sigma_0:.9g} is needed")

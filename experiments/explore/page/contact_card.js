@@ -67,7 +67,7 @@ export function contactCard(live, take) {
   }
 
   function levelRows(levels) {
-    const known = levels ? [levels.sigma_0, levels.shelf, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
+    const known = levels ? [levels.sigma_0, levels.shelf, levels.wedge, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
     const length = lengthWriter(data.diameter, known);
     const row = (below, value, words) => html("div", {}, html("dt", {}, subscripted("σ", below)),
       html("dd", {}, value === undefined ? html("span", { class: "pending" }, "…")
@@ -76,6 +76,14 @@ export function contactCard(live, take) {
             : [` = ${ratio(value / levels.sigma_0)} `, subscripted("σ", "0")]))),
       html("dd", { class: "note" }, value === null ? words.replace("below it", "at any size") : words));
     const shelf = levels?.shelf ?? null;
+    const wedge = levels?.wedge ?? null;
+    if (wedge !== null && (shelf === null || wedge < shelf)) {
+      const words = wedge > levels.sigma_0
+        ? "below it closing ends in this grasp; from it on only if all fits exactly"
+        : "closing ends in this grasp by an exact fit only: a hair more or less, and it ends elsewhere";
+      return [row("0", levels.sigma_0, "at the grasp"), row("wedge", wedge, words),
+        row("max", levels.sigma_max, "below it the object cannot leave")];
+    }
     const one = shelf === null && levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
     if (one) {
       return [row("0", levels.sigma_0, "at the grasp"), row("max", levels.sigma_max,

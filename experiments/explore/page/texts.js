@@ -3,9 +3,18 @@
 import { KEYS } from "./gestures.js";
 import { foreign, html, subscripted } from "./svg.js";
 
+/** The level below which closing ends in the target, and its name. */
+function guaranteed(plan) {
+  const levels = [["first", plan.sigma_first], ["shelf", plan.shelf?.sigma ?? null], ["wedge", plan.wedge?.sigma ?? null]];
+  const known = levels.filter(([, sigma]) => sigma !== null).sort(([, a], [, b]) => a - b);
+  return known[0] ?? ["first", null];
+}
+
 /** The name and the answer in one sentence. */
 export function heading({ plan, length }) {
-  const first = plan.shelf ? plan.shelf.sigma : plan.sigma_first;
+  const [name, first] = guaranteed(plan);
+  const wedged = first !== null && first <= plan.sigma_0;
+  const exact = "closing ends in the target grasp by an exact fit only (a wedge).";
   const unit = plan.unit ? ` ${plan.unit}` : "";
   const kind = plan.finger_radius > 0
     ? `disc fingers of radius ${Number(plan.finger_radius.toPrecision(4))}${unit}` : "point fingers";
@@ -14,15 +23,18 @@ export function heading({ plan, length }) {
   if (plan.verdict === "not_a_cage") answer.append(`These contacts are not a cage: ${plan.why}.`);
   else if (plan.sigma_max === null) {
     answer.append("However far the hand opens, the object cannot leave it. ");
-    if (first !== null) {
-      answer.append("Below ", ...level(plan.shelf ? "shelf" : "first", first), " closing can end only in the target grasp.");
+    if (wedged) answer.append(`But ${exact}`);
+    else if (first !== null) {
+      answer.append("Below ", ...level(name, first), " closing can end only in the target grasp.");
     }
+  } else if (wedged) {
+    answer.append("Below ", ...level("max", plan.sigma_max), ` the object cannot leave the hand, but ${exact}`);
   } else if (first === plan.sigma_max) {
     answer.append("Below ", ...level("max", plan.sigma_max),
       " the object cannot leave the hand, and closing can end only in the target grasp.");
   } else {
     answer.append("Below ", ...level("max", plan.sigma_max), " the object cannot leave the hand; below ",
-      ...level(plan.shelf ? "shelf" : "first", first), " closing can end only in the target grasp.");
+      ...level(name, first), " closing can end only in the target grasp.");
   }
   const [a, b] = plan.hand.phi_deg.map((angle) => `${Number(angle.toPrecision(4))}°`);
   return html("header", {},

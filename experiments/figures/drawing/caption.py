@@ -68,6 +68,8 @@ def _level(key: str, symbol: str, level: float, cage: Cage, unit: str) -> Line:
     }[key]
     if cage.sigma_first == cage.sigma_max:
         words = "below: closing ends in the target"
+    if cage.wedge is not None and "target" in words:
+        words += ", if all fits exactly"
     digits = level_digits(cage)
     ratio = rf"$= {significant(level / cage.sigma_0, digits)}\,\sigma_0$"
     return Line(key, symbol, _length(level, unit, digits), ratio, words)
