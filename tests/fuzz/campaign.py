@@ -90,8 +90,10 @@ class Campaign:
             return
         same = kind_of(found)
         tally.faults[same] += 1
-        if self.failures is not None and tally.faults[same] == 1:
-            name = f"{tally.kind}-{self.seed}-{number}"
+        name = f"{tally.kind}-{self.seed}-{number}"
+        if tally.faults[same] > 1:
+            print(f"{name}: the same again", file=sys.stderr, flush=True)
+        elif self.failures is not None:
             print(f"{name}: {found}", file=sys.stderr, flush=True)
             least = (
                 job if again else smaller(job, lambda j: kind_of(fault(self.guard.run(j))) == same)
