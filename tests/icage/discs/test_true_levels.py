@@ -22,7 +22,7 @@ from icage.errors import GraspError
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.placement_class import PlacementClass
-from icage.planner import plan
+from icage.planner import METHODS, plan
 from icage.sampling import draw_starts
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.polygons import FAMILIES, rotated
@@ -212,6 +212,35 @@ def test_both_methods_lead_to_the_same_hands(number: int) -> None:
     cells = cage_of(target)
     paper = plan(Outline(target.vertices), target.contacts, target.radius, ContactSpace())
     assert levels(paper) == pytest.approx(levels(cells), rel=EXACT)
+
+
+PLUS = np.array(
+    [[1, -2], [1, -1], [3, -1], [3, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 1], [-1, 1],
+     [-1, 0], [0, 0], [0, -2]], dtype=float,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_of_two_nearly_equal_punctures_on_one_way_the_higher_is_the_level(number: int) -> None:
+    """An inner polygon through the contacts of the lower one has the higher one below it.
+
+    Corners are moved by 1e-6 to 1e-9. sigma_max may then be too low by as much, with an upper bound
+    that is 8e-6 above it; polygons that go through the contacts of both enclose it to 1e-8.
+    """
+    moves = np.random.default_rng(number).uniform(-1.0, 1.0, PLUS.shape)
+    ring = PLUS + moves * 10.0 ** -(6 + number % 4)
+    radius = 0.04157640941816814
+    contacts = np.array(
+        [[2.0406749940317317, 1.0086106144162725], [-radius, 1.0 + radius], [-radius, -radius]]
+    )
+    cages = [plan(ring, contacts, radius, method=method) for method in METHODS]
+    for cage in cages:
+        assert levels(cage) == pytest.approx(levels(cages[0]), rel=EXACT)
+        assert cage.sigma_max is not None
+        assert cage.sigma_max_lower is not None
+        assert cage.sigma_max_upper is not None
+        assert cage.sigma_max_upper / cage.sigma_max - 1.0 < EXACT
+        assert cage.sigma_max / cage.sigma_max_lower - 1.0 < 2e-8
 
 
 # ------------------------------------------------------------------ what is not solved is said
