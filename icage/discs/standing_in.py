@@ -142,11 +142,11 @@ class Polygons:
                 return replace(cage, contacts=self.contacts)
             found = self._solved(local_cage, cage, through, self.segments)
             new = self._new_on_arcs(found, through)
+            if not len(new):
+                break
             # other punctures of the same levels: symmetry
             if last is not None and agree(last, found.levels):
                 found = found._replace(again=True)
-                break
-            if not len(new):
                 break
             last = found.levels
             through = np.vstack([through, new])

@@ -243,6 +243,29 @@ def test_of_two_nearly_equal_punctures_on_one_way_the_higher_is_the_level(number
         assert cage.sigma_max / cage.sigma_max_lower - 1.0 < 2e-8
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-5])
+def test_of_two_nearly_equal_ways_out_the_lower_one_is_the_level(unit: float) -> None:
+    """A polygon's puncture was solved to the other one, 2e-6 higher, and drawn through in vain."""
+    ring = unit * np.array(
+        [[1.1884227240383039, 0.0240551077532889], [0.99035227003192, 0.0240551077532889],
+         [0.198070454006384, 0.02061866378853334], [0.0, 0.01374577585902223],
+         [0.5942113620191519, 0.003436443964755557], [1.1884227240383039, 0.0],
+         [1.1884227240383039, 0.003436443964755557], [0.99035227003192, 0.02061866378853334],
+         [0.396140910412768, 0.01374577585902223]]
+    )  # fmt: skip
+    outline = Outline(ring)
+    radius = 0.06379160915434112 * outline.diameter
+    contacts = outline.diameter * np.array(
+        [[1.0637247250289243, 0.0011565629137616318], [0.9332709081496117, 0.08403146014499699],
+         [0.9328975356554494, -0.06340499565437042]]
+    )  # fmt: skip
+    for method in METHODS:
+        cage = plan(outline, contacts, radius, method=method)
+        assert cage.sigma_max == pytest.approx(0.1549568299049862 * outline.diameter, rel=EXACT)
+        assert cage.sigma_max_upper is not None
+        assert cage.sigma_max_upper <= cage.sigma_max * (1.0 + EXACT)
+
+
 # ------------------------------------------------------------------ what is not solved is said
 
 
