@@ -25,6 +25,7 @@ from icage.discs.offsets import check_disc_contacts
 from icage.discs.standing_in import INSIDE, TIGHT, Bound, Polygons, Solved, agree, near
 from icage.discs.true_levels import TrueLevels
 from icage.errors import GeometryError
+from icage.geometry.statics import contacts_reason
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
 from icage.method import LocalCage, Method
@@ -83,6 +84,12 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
         and near(levels.polygon_first, levels.sigma_first, wide)
     ):
         return None  # another puncture may be as near
+    if _adjusted_by(look, levels) > TARGET_SHIFT * look.curve.outline.diameter:
+        # it was looked for along a whole chord, which is more than is promised
+        outline, radius = look.curve.outline, look.curve.radius
+        polygon = look.curve.inner(look.segments, inner.through)
+        why = contacts_reason(polygon, look.contacts)
+        return not_a_cage(outline, look.critical.hand, look.contacts, why, radius)
     outer = bound.local_cage
     low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
     if low is None or solved is None:
@@ -124,7 +131,7 @@ def _finished(look: Polygons, inner: Solved, upper: float | None, outer: LocalCa
         sigma_max_upper=upper,
         sigma_first_upper=levels.sigma_first,
         sigma_first_converged=True,
-        adjusted_by=float(np.hypot(*(target - look.contacts).T).max()),
+        adjusted_by=_adjusted_by(look, levels),
         punctures=levels.punctures,
         grasps=levels.grasps,
         escape_path=path,
@@ -132,6 +139,11 @@ def _finished(look: Polygons, inner: Solved, upper: float | None, outer: LocalCa
         warnings=_warnings(look.curve, levels),
         work=work,
     )
+
+
+def _adjusted_by(look: Polygons, levels: TrueLevels) -> float:
+    """How far a finger of the target is from where it was asked to be at most, [unit]."""
+    return float(np.hypot(*(levels.grasps[0].contacts - look.contacts).T).max())
 
 
 def _warnings(curve: TrueCurve, levels: TrueLevels) -> tuple[str, ...]:

@@ -266,6 +266,25 @@ def test_of_two_nearly_equal_ways_out_the_lower_one_is_the_level(unit: float) ->
         assert cage.sigma_max_upper <= cage.sigma_max * (1.0 + EXACT)
 
 
+def test_a_target_further_off_than_is_promised_is_none() -> None:
+    """The object is a needle, 2e6 times as long as thick; a minimum of a chord was 6e-5 away."""
+    ring = np.array(
+        [[-0.1372088099, -0.0021859027], [0.1210458457, -0.0015090024], [0.1155018538, 0.407900591],
+         [0.4919577213, 0.452100878], [0.4733504083, 0.524593886], [0.1791156205, 0.53278174],
+         [0.1817216075, 0.4826046617], [-0.1877034629, 0.4868155351], [-0.164137608, 0.5300153886],
+         [-0.5080422787, 0.5259006168], [-0.461571171, 0.4598835215], [-0.1328088962, 0.4080373022]]
+    ) * np.array([1.0, 1e-6])  # fmt: skip
+    outline = Outline(ring)
+    radius = 0.03427086798007298 * outline.diameter
+    contacts = outline.diameter * np.array(
+        [[0.12105419295614518, -0.034270459427572814], [0.21169248239131272, -0.03427044878558596],
+         [0.17911460069107848, 0.03427135061444986]]
+    )  # fmt: skip
+    for method in METHODS:
+        cage = plan(outline, contacts, radius, method=method)
+        assert cage.status == "not_a_cage"
+
+
 # ------------------------------------------------------------------ what is not solved is said
 
 
