@@ -76,6 +76,12 @@ def _target(critical: CriticalHands, contacts: FloatArray) -> Critical | None:
 def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None:
     """The cage of the solved levels, if both polygons agree to it and enclose it; else None."""
     cage, levels = inner.cage, inner.levels
+    if _adjusted_by(look, levels) > TARGET_SHIFT * look.curve.outline.diameter:
+        # it was looked for along a whole chord, which is more than is promised
+        outline, radius = look.curve.outline, look.curve.radius
+        polygon = look.curve.inner(look.segments, inner.through)
+        why = contacts_reason(polygon, look.contacts)
+        return not_a_cage(outline, look.critical.hand, look.contacts, why, radius)
     if bound is None or not agree(levels, bound.levels):
         return None
     wide = SIGMA_MAX_GAP if inner.again else TIGHT
@@ -84,12 +90,6 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
         and near(levels.polygon_first, levels.sigma_first, wide)
     ):
         return None  # another puncture may be as near
-    if _adjusted_by(look, levels) > TARGET_SHIFT * look.curve.outline.diameter:
-        # it was looked for along a whole chord, which is more than is promised
-        outline, radius = look.curve.outline, look.curve.radius
-        polygon = look.curve.inner(look.segments, inner.through)
-        why = contacts_reason(polygon, look.contacts)
-        return not_a_cage(outline, look.critical.hand, look.contacts, why, radius)
     outer = bound.local_cage
     low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
     if low is None or solved is None:
