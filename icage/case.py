@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only
 from icage.checks import a_count, a_number, an_instance
-from icage.contacts import as_contacts, check_contacts, check_radius
+from icage.contacts import as_contacts, check_contacts, check_disc, check_radius
 from icage.errors import CaseError, GraspError, InputError
 from icage.grasp import Grasp
 from icage.hand import HandShape
@@ -57,9 +57,9 @@ class Case(Value):
     Raises
     ------
     CaseError, GraspError, HandError:
-        A name or unit that is not allowed; a radius below 0 or above 10 diameters; contacts off
-        the outline (or off the distance of the radius) by more than 1e-6 of the diameter, inside
-        the object, overlapping, clockwise, collinear or coincident.
+        A name or unit that is not allowed; a radius below 0 or above 10 diameters, or below
+        1e-10 but not 0; contacts off the outline (or off the distance of the radius) by more than
+        1e-6 of the diameter, inside the object, overlapping, clockwise, collinear or coincident.
 
     Examples
     --------
@@ -92,6 +92,7 @@ class Case(Value):
             raise CaseError(f"unit is {self.unit!r}; one of {', '.join(UNITS)} is needed")
         an_instance(self.outline, Outline, "outline")
         object.__setattr__(self, "finger_radius", check_radius(self.finger_radius))
+        check_disc(self.outline, self.finger_radius, self.unit)
         if self.target is not None:
             contacts = as_contacts(self.target)
             check_contacts(self.outline, contacts, self.finger_radius, self.unit)

@@ -15,10 +15,13 @@ from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
 from icage.library_faults import geometry_told
 from icage.outline import Outline
-from icage.tolerance import CONTACT_OFF
+from icage.tolerance import CONTACT_OFF, SAME_POINT
 
 LARGEST_RADIUS = 10.0
 """[diameter] Largest finger radius accepted: beyond it the object is a speck among fingers."""
+
+SMALLEST_RADIUS = SAME_POINT
+"""[diameter] Least finger radius but 0: a smaller disc lies within the point that it stands for."""
 
 _QUADRANT = 64
 """Segments a quadrant of the offset that tells a closed pocket from the outside."""
@@ -59,6 +62,20 @@ def check_radius(finger_radius: object) -> float:
     return radius
 
 
+def check_disc(outline: Outline, finger_radius: float, unit: str = "") -> None:
+    """Refuse discs that are smaller than what is taken for a point: a GraspError.
+
+    ``finger_radius`` [unit] is 0 or more.
+    """
+    least = SMALLEST_RADIUS * outline.diameter
+    if 0.0 < finger_radius < least:
+        unit = f" {unit}" if unit else ""
+        raise GraspError(
+            f"finger_radius is {finger_radius:.3g}{unit}; 0 for point fingers, or at least "
+            f"{least:.3g}{unit} ({SMALLEST_RADIUS:g} diameters of the outline) is needed"
+        )
+
+
 @geometry_told()
 def check_contacts(
     outline: Outline, contacts: FloatArray, finger_radius: float, unit: str = ""
@@ -84,6 +101,7 @@ def check_contacts(
     HandError:
         Clockwise, collinear or coincident contacts.
     """
+    check_disc(outline, finger_radius, unit)
     limit = LARGEST_RADIUS * outline.diameter
     unit = f" {unit}" if unit else ""
     if not 0.0 <= finger_radius <= limit:

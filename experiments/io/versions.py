@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -24,11 +25,17 @@ def versions() -> dict[str, str]:
     return {
         "icage": icage.__version__,
         "python": platform.python_version(),
-        **{name: version(name) for name in RECORDED},
+        **_of_libraries(),
         "closings": RULES,
         CODE: code_digest(),
         "platform": f"{platform.system()} {platform.machine()}",
     }
+
+
+@cache
+def _of_libraries() -> dict[str, str]:
+    """Read once: each of them is a whole document that has to be parsed."""
+    return {name: version(name) for name in RECORDED}
 
 
 ANY_CODE_OPTION: Final = "--any-code"

@@ -23,6 +23,7 @@ from experiments.io.parquet_files import read_table, rows_and_words, words_of
 from experiments.io.versions import versions
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
+from icage.checks import a_number
 from icage.errors import InputError
 from icage.formats.json_text import points
 from icage.hand import HandShape, Placement
@@ -169,7 +170,10 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
             index, row, run, dict(document["versions"]),
             Outline(run["outline"]["vertices"]), HandShape(complex(x, y)), config,
         )  # fmt: skip
-        _ = trial.grasps  # what is wrong with them is said here
+        # what is wrong with what is made of it later is said here
+        if not trial.grasps:
+            raise RecordingError(f"{str(folder / JSON)!r} is not a replay: a run without grasps")
+        _ = trial.start, a_number(run["plan"]["finger_radius"], "finger_radius")
         return trial
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error

@@ -10,7 +10,7 @@ import numpy as np
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.contact_space.exploration import Plane, explore_from
 from icage.errors import GeometryError
-from icage.tolerance import DEPTH_CUT, PLATEAU
+from icage.tolerance import DEPTH_CUT, PASS_ERROR, PLATEAU, SAME_POINT
 
 _MOST = 100_000
 """Regions round a target that can be looked at in half a minute: many pieces may meet in a vertex
@@ -80,8 +80,29 @@ def find_contact_target(
             near.append(ContactTarget(region, hand, low, moved, slide))
     near.sort(key=lambda t: (round(t.moved, 12), t.sigma_0, t.region.tolist()))
     for target in near:
-        if target.slide or _is_minimum(plane, target):
+        if target.slide:
             return target
+        if _is_minimum(plane, target):
+            return _valley_through(plane, target, near) or target
+    return None
+
+
+def _valley_through(
+    plane: Plane, target: ContactTarget, near: list[ContactTarget]
+) -> ContactTarget | None:
+    """The valley that ends in a minimum, where one does.
+
+    A finger in a concave corner is on two edges. The hand that may slide along one of them is all
+    that a region of the other one has of the valley, and rounding says which of both comes first.
+    """
+    size = plane.outline.diameter
+    fingers = plane.fingers(target.hand)
+    for other in near:
+        level = abs(other.sigma_0 - target.sigma_0) <= PASS_ERROR * size
+        if other.slide and level:
+            apart = np.abs(plane.fingers(other.hand) - fingers).max()
+            if apart <= SAME_POINT * size:
+                return other
     return None
 
 

@@ -39,6 +39,12 @@ fingers may pass each other too; the centres meet only when the hand is pinched.
 FINGER_COLOURS = ((0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.0, 0.620, 0.451))
 """One colour per finger, in every picture: distinct to colour-blind readers."""
 
+LEAST_RADIUS = 2e-5
+"""[diameter] Of a finger. MuJoCo 4.0.0 takes a ball of a volume below 1e-14 for nothing."""
+
+LEAST_INERTIA = 2e-15
+"""[mass diameter^2] Of a finger. MuJoCo refuses bodies of less than 1e-15."""
+
 _REST_LENGTH = 1e-12
 """[diameter] Of the linkage's springs. Not 0: the engine takes a spring that has exactly its rest
 length for one without stiffness, and the first push would throw the fingers far off."""
@@ -113,12 +119,25 @@ def build_hand(
     Raises
     ------
     InputError:
-        The radius is zero: point fingers have no body to simulate.
+        The radius is zero: point fingers have no body to simulate. Or the fingers are too small, or
+        too light, for the engine.
     """
     if not finger_radius > 0.0:
         raise InputError(
             f"finger_radius is {finger_radius:g}; the simulated fingers are discs and need "
             "a radius above 0"
+        )
+    if finger_radius < LEAST_RADIUS:
+        raise InputError(
+            f"finger_radius is {finger_radius:.3g} diameters of the object; simulated fingers need "
+            f"{LEAST_RADIUS:g} or more"
+        )
+    inertia = 0.4 * config.finger_mass * finger_radius**2
+    if inertia < LEAST_INERTIA:
+        raise InputError(
+            f"SimConfig.finger_mass is {config.finger_mass:g}: fingers of a radius of "
+            f"{finger_radius:.3g} diameters then have a moment of inertia of {inertia:.3g}; the "
+            f"engine needs {LEAST_INERTIA:g} or more"
         )
     kinematics = HandKinematics(shape)
     spec = mj.MjSpec()

@@ -90,11 +90,15 @@ class Campaign:
             return
         same = kind_of(found)
         tally.faults[same] += 1
-        if self.failures is not None and tally.faults[same] == 1:
-            name = f"{tally.kind}-{self.seed}-{number}"
+        name = f"{tally.kind}-{self.seed}-{number}"
+        if tally.faults[same] > 1:
+            print(f"{name}: the same again", file=sys.stderr, flush=True)
+        elif self.failures is not None:
             print(f"{name}: {found}", file=sys.stderr, flush=True)
+            # what had to be ended would take as long again with every piece left out
+            whole = again or outcome.code is None
             least = (
-                job if again else smaller(job, lambda j: kind_of(fault(self.guard.run(j))) == same)
+                job if whole else smaller(job, lambda j: kind_of(fault(self.guard.run(j))) == same)
             )
             keep(least, found, self.failures / name)
 

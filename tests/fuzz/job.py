@@ -49,7 +49,9 @@ MOST_SECONDS: Final = 10.0
 """[s] Of processor time."""
 
 PATIENCE: Final = 40.0
-"""[s] By the clock, on a machine that does other things: then the process is ended."""
+"""[s] By the clock: whoever has hardly had any processor time by then waits for something, and is
+ended; others when they have had so much of it. On a machine that does other things the clock says
+little."""
 
 MOST_MEMORY: Final = 1_000_000_000
 """[byte]"""

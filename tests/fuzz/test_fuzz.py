@@ -115,7 +115,7 @@ def test_a_worker_that_dies_or_hangs_is_replaced(monkeypatch: pytest.MonkeyPatch
         deep = Job({"a.json": b"{}"}, ("a.json",), "no such call")
         assert fault(guard.run(deep)).startswith("traceback: KeyError")
         hanging = Job({}, (), "hang")
-        assert fault(guard.run(hanging)) == "ended: still at work after 1 s"
+        assert fault(guard.run(hanging)).startswith("ended: still at work after 0.")
         monkeypatch.setattr("tests.fuzz.worker.PATIENCE", 60.0)
         assert fault(guard.run(Job({}, (), "die"))) == "ended: the process died"
         assert guard.run(Job({}, ("--version",))).code == 0

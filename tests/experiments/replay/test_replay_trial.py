@@ -118,6 +118,23 @@ def test_what_is_no_replay_is_an_input_error(folder: Path, tmp_path: Path, capsy
         read_trial(broken, 0)
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("grasps", {}), ("grasps", []), ("finger_radius", None), ("finger_radius", {}),
+     ("finger_radius", [0.1]), ("finger_radius", 0.0), ("finger_radius", 1e-12)],
+)  # fmt: skip
+def test_a_plan_that_nothing_can_be_closed_with_is_an_input_error(
+    folder: Path, tmp_path: Path, key: str, value: object, capsys: Any
+) -> None:
+    runs = json.loads((folder / "replay.json").read_text())["runs"]
+    runs[0]["plan"][key] = value
+    if value is None:
+        del runs[0]["plan"][key]
+    other = copied(folder, tmp_path / "other", runs=runs)
+    words = "grasps" if key == "grasps" else "finger_radius"
+    assert words in here(capsys, "replay-trial", str(other), "0").error_line()
+
+
 @pytest.mark.slow
 def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video, "find_backend", lambda: None)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from icage.planner import METHODS, plan
 from tests.oracles.against_itself.two_methods import (
     judge_discs,
     judge_large,
     judge_points,
     judge_trees,
 )
+from tests.oracles.polygons import rotated
 
 SEED = 41
 
@@ -28,6 +31,25 @@ def test_edges_parallel_to_1e_6_are_no_plateau() -> None:
     outcome = judge_points(2018, 19837)
     assert outcome.verdict == "cage"
     assert not outcome.disagreements + outcome.exceptions
+
+
+@pytest.mark.parametrize("turned", range(24))
+def test_a_slide_that_ends_in_a_concave_corner_is_one(turned: int) -> None:
+    """The regions of the corner's other edge have but the end of it; rounding chose among them."""
+    ring = np.array(
+        [[-0.5, 0], [0.5, 0], [0.1, 2.4], [1.8, 2.4], [1.8, 3.4], [-1.8, 3.4], [-1.8, 2.4],
+         [-0.5, 2.4]]
+    )  # fmt: skip
+    contacts = np.array([[0.5, 2.4], [0.11537121366031844, 3.4], [-0.5, 2.4]])
+    if turned:
+        rng = np.random.default_rng(turned)
+        contacts[0, 0], contacts[1, 0] = rng.uniform(0.2, 1.5), rng.uniform(-0.4, 0.1)
+        angle = 0.5 * np.pi * (turned % 4) if turned < 12 else turned
+        ring, contacts = rotated(ring, angle), np.roll(rotated(contacts, angle), turned % 3, axis=0)
+    for method in METHODS:
+        cage = plan(ring, contacts, method=method)
+        assert cage.status == "not_a_cage"
+        assert "opposing parallel edges" in (cage.why or "")
 
 
 @pytest.mark.parametrize("number", [62, 93])

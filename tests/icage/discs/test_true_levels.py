@@ -22,7 +22,7 @@ from icage.errors import GraspError
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.placement_class import PlacementClass
-from icage.planner import plan
+from icage.planner import METHODS, plan
 from icage.sampling import draw_starts
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.polygons import FAMILIES, rotated
@@ -212,6 +212,77 @@ def test_both_methods_lead_to_the_same_hands(number: int) -> None:
     cells = cage_of(target)
     paper = plan(Outline(target.vertices), target.contacts, target.radius, ContactSpace())
     assert levels(paper) == pytest.approx(levels(cells), rel=EXACT)
+
+
+PLUS = np.array(
+    [[1, -2], [1, -1], [3, -1], [3, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 1], [-1, 1],
+     [-1, 0], [0, 0], [0, -2]], dtype=float,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_of_two_nearly_equal_punctures_on_one_way_the_higher_is_the_level(number: int) -> None:
+    """An inner polygon through the contacts of the lower one has the higher one below it.
+
+    Corners are moved by 1e-6 to 1e-9. sigma_max may then be too low by as much, with an upper bound
+    that is 8e-6 above it; polygons that go through the contacts of both enclose it to 1e-8.
+    """
+    moves = np.random.default_rng(number).uniform(-1.0, 1.0, PLUS.shape)
+    ring = PLUS + moves * 10.0 ** -(6 + number % 4)
+    radius = 0.04157640941816814
+    contacts = np.array(
+        [[2.0406749940317317, 1.0086106144162725], [-radius, 1.0 + radius], [-radius, -radius]]
+    )
+    cages = [plan(ring, contacts, radius, method=method) for method in METHODS]
+    for cage in cages:
+        assert levels(cage) == pytest.approx(levels(cages[0]), rel=EXACT)
+        assert cage.sigma_max is not None
+        assert cage.sigma_max_lower is not None
+        assert cage.sigma_max_upper is not None
+        assert cage.sigma_max_upper / cage.sigma_max - 1.0 < EXACT
+        assert cage.sigma_max / cage.sigma_max_lower - 1.0 < 2e-8
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-5])
+def test_of_two_nearly_equal_ways_out_the_lower_one_is_the_level(unit: float) -> None:
+    """A polygon's puncture was solved to the other one, 2e-6 higher, and drawn through in vain."""
+    ring = unit * np.array(
+        [[1.1884227240383039, 0.0240551077532889], [0.99035227003192, 0.0240551077532889],
+         [0.198070454006384, 0.02061866378853334], [0.0, 0.01374577585902223],
+         [0.5942113620191519, 0.003436443964755557], [1.1884227240383039, 0.0],
+         [1.1884227240383039, 0.003436443964755557], [0.99035227003192, 0.02061866378853334],
+         [0.396140910412768, 0.01374577585902223]]
+    )  # fmt: skip
+    outline = Outline(ring)
+    radius = 0.06379160915434112 * outline.diameter
+    contacts = outline.diameter * np.array(
+        [[1.0637247250289243, 0.0011565629137616318], [0.9332709081496117, 0.08403146014499699],
+         [0.9328975356554494, -0.06340499565437042]]
+    )  # fmt: skip
+    for method in METHODS:
+        cage = plan(outline, contacts, radius, method=method)
+        assert cage.sigma_max == pytest.approx(0.1549568299049862 * outline.diameter, rel=EXACT)
+        assert cage.sigma_max_upper is not None
+        assert cage.sigma_max_upper <= cage.sigma_max * (1.0 + EXACT)
+
+
+def test_a_target_further_off_than_is_promised_is_none() -> None:
+    """The object is a needle, 2e6 times as long as thick; a minimum of a chord was 6e-5 away."""
+    ring = np.array(
+        [[-0.1372088099, -0.0021859027], [0.1210458457, -0.0015090024], [0.1155018538, 0.407900591],
+         [0.4919577213, 0.452100878], [0.4733504083, 0.524593886], [0.1791156205, 0.53278174],
+         [0.1817216075, 0.4826046617], [-0.1877034629, 0.4868155351], [-0.164137608, 0.5300153886],
+         [-0.5080422787, 0.5259006168], [-0.461571171, 0.4598835215], [-0.1328088962, 0.4080373022]]
+    ) * np.array([1.0, 1e-6])  # fmt: skip
+    outline = Outline(ring)
+    radius = 0.03427086798007298 * outline.diameter
+    contacts = outline.diameter * np.array(
+        [[0.12105419295614518, -0.034270459427572814], [0.21169248239131272, -0.03427044878558596],
+         [0.17911460069107848, 0.03427135061444986]]
+    )  # fmt: skip
+    for method in METHODS:
+        cage = plan(outline, contacts, radius, method=method)
+        assert cage.status == "not_a_cage"
 
 
 # ------------------------------------------------------------------ what is not solved is said

@@ -92,6 +92,8 @@ def test_every_solved_problem_is_a_case(file: Path):
         (("finger_radius",), "0", 'finger_radius is "0"; a number'),
         (("finger_radius",), False, "finger_radius is false; a number"),
         (("finger_radius",), 1e9, "finger_radius is 1e\\+09 mm; 0 to"),
+        (("finger_radius",), 1e-300, "finger_radius is 1e-300 mm; 0 for point fingers, or at"),
+        (("finger_radius",), 1e-12, "finger_radius is 1e-12 mm; 0 for point fingers, or at"),
         (("grasp",), GONE, "no key 'grasp'"),
         (("grasp",), [], "grasp is a list; an object"),
         (("grasp", "contacts"), GONE, "grasp has no key 'contacts'"),

@@ -12,7 +12,7 @@ from icage.errors import InputError
 from icage.hand import HandShape
 from sim.world.config import SimConfig
 from sim.world.hand_file import hand_file, hand_mjcf
-from sim.world.hand_model import HandKinematics, build_hand
+from sim.world.hand_model import LEAST_RADIUS, HandKinematics, build_hand
 
 SHAPES = [
     HandShape.from_angles_deg(33.0, 130.0),
@@ -161,6 +161,31 @@ def test_free_speed_and_force_limit_do_not_depend_on_the_labels() -> None:
 def test_point_fingers_are_refused() -> None:
     with pytest.raises(InputError, match="radius above 0"):
         build_hand(SHAPES[0], 0.0, SimConfig())
+
+
+@pytest.mark.parametrize(
+    ("radius", "mass", "words"),
+    [
+        (1e-5, 0.2, "simulated fingers need 2e-05 or more"),
+        (1e-300, 0.2, "simulated fingers need 2e-05 or more"),
+        (0.03, 1e-12, "moment of inertia of 3.6e-16"),
+        (2e-5, 1e-6, "moment of inertia of 1.6e-16"),
+        (0.03, 0.0, "moment of inertia of 0;"),
+    ],
+)
+def test_fingers_that_the_engine_would_not_take_are_refused(
+    radius: float, mass: float, words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        build_hand(SHAPES[0], radius, SimConfig(finger_mass=mass))
+
+
+@pytest.mark.parametrize(
+    ("radius", "mass"), [(LEAST_RADIUS, 0.2), (0.03, 1e-11), (LEAST_RADIUS, 2e-5)]
+)
+def test_the_engine_takes_the_least_fingers(radius: float, mass: float) -> None:
+    model = build_hand(SHAPES[0], radius, SimConfig(finger_mass=mass)).compile()
+    assert model.nv == 3
 
 
 def test_shipped_mjcf_is_up_to_date_and_loads() -> None:
