@@ -273,9 +273,9 @@ class Cage(Value):
     def wedge(self) -> Wedge | None:
         """Why, and from which size on, closing ends in the target only by an exact fit.
 
-        Fingers 1e-5 of the diameter thinner or thicker would end elsewhere, or the contacts press
-        25 times as hard as the motor pulls. None where nothing of the guaranteed set hangs on that,
-        and for cages planned by the contact space, which does not look.
+        Fingers 1e-5 of the diameter thinner or thicker would end elsewhere. None where nothing of
+        the guaranteed set hangs on that, and for cages planned by the contact space, which does
+        not look.
         """
         if self.work is None:
             return None

@@ -15,14 +15,12 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-import shapely
 
 from icage.arrays import FloatArray, read_only
 from icage.cells.ends import Bottom, Ends, ends_below
 from icage.cells.free_space import FreeSpace
 from icage.cells.moved_walls import with_walls_moved
 from icage.cells.work import CageWork
-from icage.discs.balance import finger_maps, pushing
 from icage.geometry.near_frame import NearFrame
 from icage.tolerance import DEPTH_CUT, NEAR_POSITION, NEAR_TURN, PINCHED
 from icage.values import Value
@@ -36,21 +34,6 @@ FIT: Final = 1e-5
 
 SAME: Final = 25.0
 """[FIT] A level that moves by more is not that of the same passage."""
-
-YIELD: Final = 200.0
-"""[1] A target that yields this much more than one contact that bears the motor alone is none that
-closing comes to: in physics (``sim.SimConfig``) such a contact gives 6e-7 of the diameter, and what
-ends 1e-4 of it beside the target has not ended in the target. [docs/decisions/0028-wedges.md]"""
-
-_SUSPECT: Final = 10.0
-"""[1] Contacts that press less hard than this many times the motor's pull are not looked at."""
-
-_ARM: Final = 0.1
-"""[diameter] A turn counts as much as the shift of a point this far away: 1e-3 rad as 1e-4
-diameters."""
-
-_TOUCHES: Final = 1e-7
-"""[diameter] A finger this near to an edge is carried by it."""
 
 _DEPTH: Final = 10.0
 """[FIT] Minima that are shallower do not count here: that much the change itself may make."""
@@ -66,9 +49,6 @@ class WedgeKind(StrEnum):
     """Fingers a hair thinner find a way to another end."""
     THICKER = "thicker"
     """Fingers a hair thicker stop at another end."""
-    YIELDS = "yields"
-    """The contacts press so much harder than the motor pulls, and the hand moves so much further
-    than they give, that it ends beside the target."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,10 +63,6 @@ class Wedge(Value):
         What the exact fit is about.
     fit:
         [unit] The change of the fingers' radius that shows it, positive.
-    force, shift:
-        [1] For ``yields``: sum of the forces at the target's contacts over the motor's pull, and
-        how far the object shifts in the hand (a turn of 1e-3 rad counted as 1e-4 diameters) where
-        the contacts give by ``fit`` in sum, each as it is pressed; else None.
     contacts:
         (fingers, 2) where a hand with such fingers may end instead; None if the object escapes.
     """
@@ -94,8 +70,6 @@ class Wedge(Value):
     sigma: float
     kind: WedgeKind
     fit: float
-    force: float | None
-    shift: float | None
     contacts: FloatArray | None
 
     def __post_init__(self) -> None:
@@ -120,7 +94,7 @@ class _Found(NamedTuple):
 def wedge_of(cage: Cage, work: CageWork) -> Wedge | None:
     """What of a cage's guaranteed set hangs on an exact fit, or None.
 
-    Complexity: two searches of the cells of the set, three where contacts press hard.
+    Complexity: two searches of the cells of the set.
     """
     asked = _Asked.of(cage, work)
     if asked is None:
@@ -132,7 +106,7 @@ def wedge_of(cage: Cage, work: CageWork) -> Wedge | None:
             least = found
         if least is not None and least.sigma <= cage.sigma_0:
             return least
-    return asked.yields() or least
+    return least
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +134,7 @@ class _Asked:
         sigma_0, fit = self.cage.sigma_0, FIT * self.cage.outline.diameter
         first = self.found(self._all(sign * fit))
         if first.near is None:
-            return Wedge(sigma_0, kind, fit, None, None, self._back(first.end))
+            return Wedge(sigma_0, kind, fit, self._back(first.end))
         known = self._of_chords() if np.isfinite(first.level) else ()
         if known:
             first = self.found(self._all(sign * fit), known)
@@ -170,48 +144,11 @@ class _Asked:
         found = [(first, fit)]
         found += [(self.found(self._all(sign * h * fit), known), h * fit) for h in _LESS]
         least, by = min(found, key=lambda one: one[0].level)
-        return Wedge(max(least.level, sigma_0), kind, by, None, None, self._back(least.end))
+        return Wedge(max(least.level, sigma_0), kind, by, self._back(least.end))
 
     def _all(self, change: float) -> FloatArray:
         """Every edge of the object moved by the same, [unit]."""
         return np.full(len(self.work.search.free_space.pieces.wall_from), change)
-
-    def yields(self) -> Wedge | None:
-        """Whether the object ends beside the target where contacts give as they are pressed."""
-        fit = FIT * self.cage.outline.diameter
-        pressed = self._pressed()
-        force = float(pressed.sum())
-        if force <= _SUSPECT:
-            return None
-        near = self.found(-fit * pressed / force).near
-        if near is None:
-            return None
-        shift = self._shifted(near) / fit
-        if force * shift <= YIELD:
-            return None
-        sigma_0, end = self.cage.sigma_0, self._back(near)
-        return Wedge(sigma_0, WedgeKind.YIELDS, fit, force, shift, end)
-
-    def _pressed(self) -> FloatArray:
-        """(walls,) how hard the target presses on every edge of the object, [the motor's pull]."""
-        free_space = self.work.search.free_space
-        pieces, reach = free_space.pieces, _TOUCHES * self.cage.outline.diameter
-        a = np.column_stack([pieces.x[pieces.wall_from], pieces.y[pieces.wall_from]])
-        b = np.column_stack([pieces.x[pieces.wall_to], pieces.y[pieces.wall_to]])
-        side = b - a
-        length = np.hypot(side[:, 0], side[:, 1])
-        normal = np.column_stack([-side[:, 1], side[:, 0]]) / length[:, None]
-        points = self.target - free_space.origin
-        along = np.clip(((points[:, None] - a) * side).sum(axis=2) / length**2, 0.0, 1.0)
-        off = points[:, None] - (a + along[:, :, None] * side)
-        finger, wall = np.nonzero(np.hypot(off[:, :, 0], off[:, :, 1]) <= reach)
-        maps = finger_maps(self.cage.hand)[finger]
-        columns = np.einsum("kij,ki->jk", maps, normal[wall])
-        w = points[1] - points[0]
-        wanted = np.array([0.0, 0.0, w[0], w[1]]) / np.hypot(w[0], w[1])
-        pressed = np.zeros(len(a))
-        np.add.at(pressed, wall, pushing(columns, wanted)[0])
-        return pressed
 
     def found(self, change: FloatArray, known: tuple[FloatArray, ...] = ()) -> _Found:
         """Where closing from the set may end if the edges are moved by ``change`` (walls,) [unit].
@@ -271,35 +208,9 @@ class _Asked:
         near = np.hypot(off[:, 0], off[:, 1]) <= NEAR_POSITION * self.cage.outline.diameter
         return bool((near & (np.abs(turn) <= NEAR_TURN)).all())
 
-    def _shifted(self, hand: FloatArray) -> float:
-        """How far the object lies from where it is in the target, as the hand sees it, [unit]."""
-        seen, own = _in_hand(self._middle, hand), _in_hand(self._middle, self.target)
-        turn = abs(float(np.angle(seen.side / own.side)))
-        return max(abs(seen.middle - own.middle), _ARM * self.cage.outline.diameter * turn)
-
-    @property
-    def _middle(self) -> complex:
-        """The centre of the object's area."""
-        outline = self.cage.outline
-        middle = NearFrame.of(outline).into(shapely.get_coordinates(outline.polygon.centroid)[0])
-        return complex(*middle)
-
     def _back(self, hand: FloatArray | None) -> FloatArray | None:
         """A hand in the object's own frame."""
         return None if hand is None else NearFrame.of(self.cage.outline).back(hand)
-
-
-class _Seen(NamedTuple):
-    """The object's middle in the frame of a hand (finger 1, towards finger 2), and that side."""
-
-    middle: complex
-    side: complex
-
-
-def _in_hand(middle: complex, hand: FloatArray) -> _Seen:
-    first = complex(*hand[0])
-    side = complex(*hand[1]) - first
-    return _Seen((middle - first) * abs(side) / side, side)
 
 
 def _other_end(ends: Ends, right: list[bool]) -> float:

@@ -57,6 +57,12 @@ def add_parser(subparsers: Any) -> None:
         "what they are for",
     )
     parser.add_argument(
+        "--exact-fit",
+        action="store_true",
+        help="say, too, from which opening on the guarantee hangs on an exact fit, where there is "
+        "one: fingers 1e-5 of the diameter thinner or thicker would end elsewhere",
+    )
+    parser.add_argument(
         "--friction",
         type=not_negative_list,
         metavar="MU[,MU...]",
@@ -185,7 +191,9 @@ def run(args: argparse.Namespace) -> int:
     friction, friction_lines = _friction(answer.cells, args, tolerance)
     document: dict[str, Any] = {}
     if args.json is not None:
-        document = plan_document(answer.cage, answer.regions(), case.name, case.unit)
+        document = plan_document(
+            answer.cage, answer.regions(), case.name, case.unit, exact_fit=args.exact_fit
+        )
         if bounds is not None:
             document["bracket"] = bracket_document(bounds)
         document.update(friction)
@@ -200,7 +208,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json is not None:
         write_json(document, args.json)
     if args.json != "-":
-        print("\n".join(plan_summary(answer.cage, case.name, case.unit)))
+        print("\n".join(plan_summary(answer.cage, case.name, case.unit, exact_fit=args.exact_fit)))
         if bounds is not None:
             print("\n".join(bracket_summary(bounds, case.unit)))
         for line in friction_lines:

@@ -38,7 +38,7 @@ def explore_document(
 
     In the name, marks that nobody sees (of the direction of writing, say) become escapes.
     """
-    plan = plan_document(cage, (), one_line(name), unit)
+    plan = plan_document(cage, (), one_line(name), unit, exact_fit=True)
     del plan["regions"]  # those of the page are simpler, and say so by another key
     if friction and tolerance is not None:
         plan.update(friction_document(friction, tolerance))

@@ -43,7 +43,8 @@ def write_page(case: Case, path: Path, mus: Sequence[float] = ()) -> Page:
     friction = friction_levels(cage, sorted(set(mus)), tolerance) if mus else ()
     tables = query_tables(cage, os.cpu_count() or 1)
     document = explore_document(cage, tables, case.name, case.unit, friction, tolerance)
-    summary = "\n".join(map(one_line, plan_summary(cage, case.name, case.unit)))
+    lines = plan_summary(cage, case.name, case.unit, exact_fit=True)
+    summary = "\n".join(map(one_line, lines))
     content = page_html(document, summary).encode("utf-8")
     with whole_file(path) as part:
         part.write_bytes(content)

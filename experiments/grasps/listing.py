@@ -58,7 +58,7 @@ def print_list(case: Case, planned: PlannedGrasps, args: Namespace) -> None:
         print(
             f"{score:8.4f} {first:>8} {top:>8} {cage.sigma_0:10.6g} "
             f"{free_gap(cage):9.4g} {alike:5d}  {phi:<17} {points}"
-            f"{'' if cage.wedge is None else '  (a wedge: see icage plan)'}"
+            f"{'' if cage.wedge is None else '  (a wedge: see icage plan --exact-fit)'}"
         )
 
 

@@ -14,9 +14,18 @@ from icage.wedge import Wedge, WedgeKind
 
 
 def plan_document(
-    cage: Cage, regions: Sequence[FingerRegion], name: str, unit: str
+    cage: Cage,
+    regions: Sequence[FingerRegion],
+    name: str,
+    unit: str,
+    *,
+    exact_fit: bool = False,
 ) -> dict[str, Any]:
-    """Everything about a cage that outlives this process; lengths in ``unit``."""
+    """Everything about a cage that outlives this process; lengths in ``unit``.
+
+    ``exact_fit`` asks for its wedge, too: two more searches.
+    """
+    wedge = cage.wedge if exact_fit else None
     return {
         "format": "icage-plan/1",
         "name": name,
@@ -33,7 +42,7 @@ def plan_document(
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         **({} if cage.shelf is None else {"shelf": _shelf(cage.shelf)}),
-        **({} if cage.wedge is None else {"wedge": wedge_document(cage.wedge)}),
+        **({} if wedge is None else {"wedge": wedge_document(wedge)}),
         **(_brackets(cage) if cage.finger_radius > 0.0 else {}),
         "punctures": [
             {
@@ -75,8 +84,6 @@ def wedge_document(wedge: Wedge) -> dict[str, Any]:
         "sigma": wedge.sigma,
         "kind": wedge.kind,
         "fit": wedge.fit,
-        "force": wedge.force,
-        "shift": wedge.shift,
         "contacts": wedge.contacts,
     }
 
@@ -123,8 +130,11 @@ def _ring(ring: shapely.LinearRing, ccw: bool = False) -> list[list[float]]:
     return (points if ring.is_ccw == ccw else points[::-1]).tolist()
 
 
-def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
-    """Lines for a reader: what holds, up to which opening, and what comes after."""
+def plan_summary(cage: Cage, name: str, unit: str, *, exact_fit: bool = False) -> Iterator[str]:
+    """Lines for a reader: what holds, up to which opening, and what comes after.
+
+    ``exact_fit`` asks what of it hangs on an exact fit, too.
+    """
     phi_1, phi_2 = cage.hand.phi_deg
     yield (
         f"{name}: {len(cage.outline)} vertices, diameter {cage.outline.diameter:.6g} {unit}, "
@@ -135,12 +145,13 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
     if cage.status != "not_a_cage":
         ends = "closing ends only in the target"
         on_shelf = "" if cage.shelf is None else ", or stays on a shelf"
-        exact = "" if cage.wedge is None else ", if all fits exactly"
+        wedge = cage.wedge if exact_fit else None
+        exact = "" if wedge is None else ", if all fits exactly"
         yield _level("sigma_first", cage.sigma_first, cage, ends + on_shelf + exact)
         if cage.shelf is not None:
             yield _level("shelf", cage.shelf.sigma, cage, f"{ends} (parallel edges){exact}")
-        if cage.wedge is not None:
-            yield _wedge_line(cage, cage.wedge, unit)
+        if wedge is not None:
+            yield _wedge_line(cage, wedge, unit)
         yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")
         for puncture in cage.punctures:
             joins = f", joins grasp {', '.join(map(str, puncture.joins))}" if puncture.joins else ""
@@ -166,15 +177,11 @@ def plan_summary(cage: Cage, name: str, unit: str) -> Iterator[str]:
 _WEDGED: Final = {
     WedgeKind.THINNER: "fingers {fit:.2g} {unit} thinner may end elsewhere",
     WedgeKind.THICKER: "fingers {fit:.2g} {unit} thicker may end elsewhere",
-    WedgeKind.YIELDS: "contacts press {force:.3g} times as hard as the motor, and the object "
-    "shifts {shift:.3g} times as far as they give",
 }
 
 
 def _wedge_line(cage: Cage, wedge: Wedge, unit: str) -> str:
-    why = _WEDGED[wedge.kind].format(
-        fit=wedge.fit, unit=unit, force=wedge.force or 0.0, shift=wedge.shift or 0.0
-    )
+    why = _WEDGED[wedge.kind].format(fit=wedge.fit, unit=unit)
     if wedge.sigma <= cage.sigma_0:
         return f"wedge        closing ends in the target by an exact fit only: {why}"
     return _level("wedge", wedge.sigma, cage, f"this hangs on no exact fit ({why})")

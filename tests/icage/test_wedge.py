@@ -55,14 +55,6 @@ def flush(radius: float) -> Asked:
     return Asked(ring, ((right, low), (left, 3.0 + radius), (left, low)), radius)
 
 
-YIELDING = Asked(
-    ((2, 2), (1, 2), (1, 4), (-3, 4), (-3, 0), (9, 0), (9, 1), (8, 1), (8, 4), (4, 4), (4, 2)),
-    ((1.1606064853638625, 3.5216084862230344), (2.7214077283538347, -0.16060648536386335),
-     (3.839393514636137, 2.160606485363862)),
-    0.1606064853638627,
-)  # fmt: skip
-"""Two fingers push a slot apart as hard as the third one almost pulls it shut."""
-
 THIN = Asked(
     ((2, 0), (4, 0), (4, -2), (5, -2), (5, 2), (1, 2), (1, 3), (-1, 3), (-1, 0), (-4, 0), (-4, -4),
      (0, -4), (0, -1), (1, -1), (1, 0)),
@@ -76,7 +68,6 @@ NOTHING_LEFT = {
     "slanted": (SLANTED, WedgeKind.THICKER),
     "flush": (flush(0.2), WedgeKind.THICKER),
     "flush points": (flush(0.0), WedgeKind.THICKER),
-    "yielding": (YIELDING, WedgeKind.YIELDS),
 }
 
 
@@ -135,19 +126,6 @@ def test_fingers_a_hair_thicker_end_elsewhere(change: float) -> None:
         assert ends[1].sigma > 1.4 * cage.sigma_0
 
 
-def test_force_is_how_fast_sigma_0_grows_with_the_radius() -> None:
-    cage = planned(YIELDING)
-    wedge = wedge_in(cage)
-    sizes: list[float] = []
-    for by in (-1e-7, 1e-7):
-        case = icage.Case("yields", "m", cage.outline, cage.finger_radius, cage.contacts)
-        other = icage.regrasp(case, finger_radius=cage.finger_radius + by).contacts
-        sizes.append(float(np.hypot(*(other[1] - other[0]))))
-    assert wedge.force == pytest.approx((sizes[1] - sizes[0]) / 2e-7, rel=0.01)
-    assert wedge.shift is not None
-    assert wedge.shift > 10.0
-
-
 def test_a_thin_way_out_caps_the_guaranteed_set_where_it_opens() -> None:
     cage = planned(THIN)
     wedge = wedge_in(cage)
@@ -167,19 +145,19 @@ def regrasped(cage: Cage, by: float) -> np.ndarray:
 
 
 def test_plan_and_summary_tell() -> None:
-    for asked in (SLANTED, YIELDING, THIN):
+    for asked in (SLANTED, THIN):
         cage = planned(asked)
-        document = plan_document(cage, (), "hook", "m")
+        document = plan_document(cage, (), "hook", "m", exact_fit=True)
         assert document["wedge"]["sigma"] == wedge_in(cage).sigma
         assert document["wedge"]["kind"] == wedge_in(cage).kind
-        lines = list(plan_summary(cage, "hook", "m"))
+        lines = list(plan_summary(cage, "hook", "m", exact_fit=True))
         assert sum(line.startswith("wedge ") for line in lines) == 1
 
 
 @pytest.mark.parametrize(
     ("scale", "turn", "shift"), [(7.0, 0.0, 0.0), (1.0, 0.7, 0.0), (0.01, 2.0, 3.0)]
 )
-@pytest.mark.parametrize("asked", [SLANTED, YIELDING, THIN])
+@pytest.mark.parametrize("asked", [SLANTED, THIN])
 def test_moved_copies_have_the_same_wedge(
     asked: Asked, scale: float, turn: float, shift: float
 ) -> None:
@@ -202,7 +180,7 @@ GOOD = sorted(path.stem for path in CASES.glob("*.json"))
 def test_shipped_cases_hang_on_no_exact_fit(name: str) -> None:
     cage = plan(icage.load(name if name not in GOOD else CASES / f"{name}.json"))
     assert cage.wedge is None
-    assert "wedge" not in plan_document(cage, (), name, "m")
+    assert "wedge" not in plan_document(cage, (), name, "m", exact_fit=True)
     if cage.shelf is None:
         assert cage.sigma_guaranteed == cage.sigma_first
 

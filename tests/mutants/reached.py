@@ -13,7 +13,6 @@ from collections.abc import Generator
 from pathlib import Path
 from typing import Any, Final
 
-import coverage
 import pytest
 
 from experiments.environment import ROOT
@@ -26,6 +25,8 @@ class Reached:
     """Writes {test: [seconds, {file: [lines]}]}, over what ``out`` had of other tests."""
 
     def __init__(self, out: Path) -> None:
+        import coverage  # extra `lines`: only here, as this file is read with all tests
+
         self.out = out
         self._seconds: dict[str, float] = {}
         self._failed: set[str] = set()

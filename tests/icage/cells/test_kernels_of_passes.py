@@ -23,6 +23,7 @@ from icage.cells.kernels.columns import (
 )
 from icage.cells.kernels.facet import (
     ALONG,
+    BASE_COLUMNS,
     BOUND,
     ERROR,
     G_X,
@@ -62,7 +63,8 @@ def half_planes(rng: np.random.Generator, n: int) -> Floats:
     """Rows g . w >= c with |g| = 1, with an error that is rounding."""
     angle = rng.uniform(0.0, 2.0 * np.pi, n)
     level = rng.normal(size=n) * 0.4
-    return np.column_stack([np.cos(angle), np.sin(angle), level, np.full(n, 1e-15)])
+    error = np.full(n, 1e-15)
+    return np.column_stack([np.cos(angle), np.sin(angle), level, error, error])
 
 
 def least_of(rows: Floats) -> float:
@@ -111,7 +113,7 @@ def test_what_doubles_cannot_tell_is_said() -> None:
     error = 1e-14
 
     def asked(*rows: tuple[float, float, float], worst: float = 1e-12, off: float = error) -> int:
-        table = np.array([(*r, off) for r in rows])
+        table = np.array([(*r, off, off) for r in rows])
         return min_norm(table, len(table), worst).status
 
     up, down = (0.0, 1.0), (0.0, -1.0)
@@ -171,7 +173,7 @@ def facets(s: Setting, count: int, spread: float) -> list[tuple[np.ndarray, int,
 def test_the_least_opening_on_a_facet_is_held_by_what_it_touches(seed: int) -> None:
     """It is feasible, and w is a sum with weights >= 0 of the rows that are tight."""
     s = Setting(seed, 1.0 if seed % 2 else 30.0)
-    room, base = new_room(), np.empty((MAX_BASE, 5))
+    room, base = new_room(), np.empty((MAX_BASE, BASE_COLUMNS))
     told = [0, 0]
     for cell, i, slot in facets(s, 30, 0.1):
         facet = facet_of(s.pieces, cell, i, slot)

@@ -321,11 +321,15 @@ def test_a_corner_is_trusted_as_far_as_its_errors_allow() -> None:
         room = np.pi - spread
         limit = worst / max(share.sum(), 1.0 / np.sin(min(0.5 * room, 1.5)))
         for error, known in ((0.99 * limit, FOUND), (1.01 * limit, UNSURE)):
-            rows = np.array([[*a, a @ w, error], [*b, b @ w, error]])
+            rows = np.array([[*a, a @ w, error, error], [*b, b @ w, error, error]])
             assert min_norm(rows, 2, worst).status == known
             told[int(known == FOUND)] += 1
         # the error of the one row only
-        one = np.array([[*a, a @ w, 0.0], [*b, b @ w, 0.99 * worst / share[1] / 10.0]])
+        off = 0.99 * worst / share[1] / 10.0
+        one = np.array([[*a, a @ w, 1e-14, 1e-14], [*b, b @ w, off, off]])
+        assert min_norm(one, 2, worst).status == FOUND
+        # what is no rounding moves no value
+        one[1, 3] *= 100.0
         assert min_norm(one, 2, worst).status == FOUND
     assert min(told) == 80
 
