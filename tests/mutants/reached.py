@@ -11,11 +11,14 @@ import signal
 import time
 from collections.abc import Generator
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 
 from experiments.environment import ROOT
+
+if TYPE_CHECKING:
+    import coverage
 
 PATIENCE: Final = 3
 """[s] Of processor time, for one test."""
