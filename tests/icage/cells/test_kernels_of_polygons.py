@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from icage.cells.free_space import FreeSpace, search
+from icage.cells.free_space import search
 from icage.cells.kernels.convex_polygon import (
     Line,
     area,
@@ -26,11 +26,10 @@ from icage.cells.kernels.plateau import translations
 from icage.cells.kernels.region import _covered, all_sandwiches
 from icage.cells.kernels.sandwich import CORNERS, sandwich
 from icage.cells.kernels.shrink import pivot, sees
-from icage.hand import HandShape
 from icage.kernels.locate import build_buckets, cells_of, depth_inside, locate, nodes_of
-from icage.outline import Outline
+from tests.icage.cells.setting import Setting
 from tests.oracles.geometry import Floats
-from tests.oracles.targets import random_target
+from tests.oracles.half_planes import least_norm
 
 pytestmark = pytest.mark.usefixtures("plain")
 
@@ -98,27 +97,6 @@ def test_a_hull_is_shapelys(kind: str) -> None:
         if known.geom_type == "Polygon":
             assert len(found) == len(known.exterior.coords) - 1
             assert area(*found.T.copy(), m) == pytest.approx(known.area)
-
-
-class Setting:
-    """A random object with its pieces and a hand on it."""
-
-    def __init__(self, seed: int, size: float = 1.0) -> None:
-        self.rng = np.random.default_rng([seed, 23])
-        target = random_target(self.rng, ["star", "random", "tool", "comb"][seed % 4])
-        outline = Outline(size * target.vertices)
-        self.space = FreeSpace.around(outline, HandShape.from_contacts(size * target.contacts))
-        self.pieces, self.z, self.size = self.space.pieces, self.space.z, outline.diameter
-        self.ring = outline.vertices - self.space.origin
-        at = (size * target.contacts - self.space.origin) @ [1.0, 1j]
-        self.hand = Hand(at[0].real, at[0].imag, (at[1] - at[0]).real, (at[1] - at[0]).imag)
-        p = self.pieces
-        self.corners = [
-            np.column_stack([p.x[v], p.y[v]])
-            for v in (p.slot_vertex[p.ptr[k] : p.ptr[k + 1]] for k in range(len(p.ptr) - 1))
-        ]
-        self.shapes = [shapely.Polygon(c) for c in self.corners]
-        self.fingers = complex(*self.hand[:2]) + complex(*self.hand[2:]) * (self.z @ [1.0, 1j])
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -300,16 +278,7 @@ def least_openings(s: Setting, cell: np.ndarray, i: int, points: Floats) -> Floa
     found = np.full(len(points), np.inf)
     for k, q in enumerate(points):
         c = offset[:, 0] - offset[:, 1:] @ q
-        tries = [np.zeros(2), *(g * (c / (g * g).sum(axis=1))[:, None])]
-        for a, b in combinations(range(len(g)), 2):
-            det = g[a, 0] * g[b, 1] - g[a, 1] * g[b, 0]
-            if abs(det) > 1e-12:
-                tries.append(np.array([c[a] * g[b, 1] - c[b] * g[a, 1],
-                                       g[a, 0] * c[b] - g[b, 0] * c[a]]) / det)  # fmt: skip
-        w = np.array(tries)
-        held = (w @ g.T >= c - 1e-9 * s.size).all(axis=1)
-        if held.any():
-            found[k] = np.hypot(*w[held].T).min()
+        found[k] = least_norm(g, c, 1e-9 * s.size)
     return found
 
 

@@ -22,7 +22,7 @@ from icage.cells.kernels.search import explore
 from icage.cells.kernels.shrink import _blocks
 from icage.geometry.exterior import Pieces
 from icage.kernels.storage import hash_slot
-from tests.icage.cells.test_kernels_of_polygons import Setting
+from tests.icage.cells.setting import Setting
 from tests.oracles.geometry import Floats
 
 pytestmark = pytest.mark.usefixtures("plain")

@@ -21,7 +21,7 @@ from icage.friction.kernels.disc_hands import (
     sagitta,
     slack_of,
 )
-from icage.friction.kernels.disc_jams import _begun, _room, _sizes_fit, _smaller
+from icage.friction.kernels.disc_jams import Room, _begun, _room, _sizes_fit, _smaller
 from icage.friction.kernels.far import Near
 from icage.friction.kernels.goal import Goal
 from icage.geometry.exterior import exterior_pieces
@@ -47,17 +47,21 @@ def squeeze(ray: Floats, hands: Floats) -> Floats:
     return np.where(sides, work, np.inf).min(axis=(1, 2))
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12])  # 7 takes long
-@pytest.mark.parametrize("towards", [False, True])
-def test_no_hand_that_forces_hold_is_smaller_or_nearer(seed: int, towards: bool) -> None:
+def drawn(seed: int) -> tuple[np.random.Generator, Flat, Room, Floats]:
+    """A flat polygon of hands, room to work in, and the rays (m, ...) of forces on some edges."""
     rng = np.random.default_rng([seed, 3])
     flat = Flat.drawn(rng, np.append(rng.normal(size=2), [1.5, 0.8]), 0.5)
     room = _room(3)
     m = 0
     while not m:
-        edge = edges(rng, 5)
-        m = rays(Z, edge, 5, room.ray)
-    ray = room.ray[:m].copy()
+        m = rays(Z, edges(rng, 5), 5, room.ray)
+    return rng, flat, room, room.ray[:m].copy()
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12])  # 7 takes long
+@pytest.mark.parametrize("towards", [False, True])
+def test_no_hand_that_forces_hold_is_smaller_or_nearer(seed: int, towards: bool) -> None:
+    rng, flat, room, ray = drawn(seed)
     hands = flat.hands(rng, 300)
     held = hands[squeeze(ray, hands) < -1e-9]
     size = np.hypot(hands[:, 2], hands[:, 3])
@@ -67,7 +71,7 @@ def test_no_hand_that_forces_hold_is_smaller_or_nearer(seed: int, towards: bool)
     room.polygon[: len(flat.inside)] = flat.corners
     point = np.full(4, np.nan)
     n = len(flat.inside)
-    found = least_balanced(n, Z, ray, m, ALL_FAR, goal, 1e6, 1e-12, 1e-12, room, point)
+    found = least_balanced(n, Z, ray, len(ray), ALL_FAR, goal, 1e6, 1e-12, 1e-12, room, point)
 
     def costs(q: Floats) -> Floats:
         sizes = np.hypot(q[:, 2], q[:, 3])
@@ -85,8 +89,8 @@ def test_no_hand_that_forces_hold_is_smaller_or_nearer(seed: int, towards: bool)
         assert squeeze(ray, wiggled).min() < 1e-5
         less, more = found * (1.0 - 1e-6), found * (1.0 + 1e-6)
         args = (ALL_FAR, goal)
-        assert least_balanced(n, Z, ray, m, *args, less, 1e-12, 1e-12, room, point) == np.inf
-        again = least_balanced(n, Z, ray, m, *args, more, 1e-12, 1e-12, room, point)
+        assert least_balanced(n, Z, ray, len(ray), *args, less, 1e-12, 1e-12, room, point) == np.inf
+        again = least_balanced(n, Z, ray, len(ray), *args, more, 1e-12, 1e-12, room, point)
         assert again == pytest.approx(found, rel=1e-6)
 
 
@@ -403,14 +407,7 @@ def test_what_begins_and_what_is_left_of_a_tolerance() -> None:
 @pytest.mark.parametrize("seed", [42, 72, 81, 92, 98])
 def test_a_bound_rises_as_its_polygon_is_halved(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two balances that squeeze together only on a curve: what is left of it is never too much."""
-    rng = np.random.default_rng([seed, 3])
-    flat = Flat.drawn(rng, np.append(rng.normal(size=2), [1.5, 0.8]), 0.5)
-    room = _room(3)
-    m = 0
-    while not m:
-        edge = edges(rng, 5)
-        m = rays(Z, edge, 5, room.ray)
-    ray = room.ray[:m].copy()
+    rng, flat, room, ray = drawn(seed)
     hands = flat.hands(rng, 3000)
     held = hands[squeeze(ray, hands) < -1e-9]
     n, point = len(flat.inside), np.full(4, np.nan)
@@ -418,7 +415,9 @@ def test_a_bound_rises_as_its_polygon_is_halved(seed: int, monkeypatch: pytest.M
     for most in (0, 3, 6, 9):
         monkeypatch.setattr(module, "HALVED", most)
         room.polygon[:n] = flat.corners
-        bound = least_balanced(n, Z, ray, m, ALL_FAR, NO_GOAL, 1e6, 1e-12, 1e-12, room, point)
+        bound = least_balanced(
+            n, Z, ray, len(ray), ALL_FAR, NO_GOAL, 1e6, 1e-12, 1e-12, room, point
+        )
         bounds.append(float(bound))
     assert bounds == sorted(bounds)
     if len(held):
