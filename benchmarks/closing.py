@@ -25,8 +25,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from benchmarks import timing
 from benchmarks.closing_against import ALL, GRASPS, SETS, compare_outcomes, compare_speed
-from benchmarks.planner import timed
 from icage.planner import plan
 from icage.sampling import draw_starts
 from sim.closing.approach import approached
@@ -59,8 +59,7 @@ def main() -> None:
     if options.against is not None:
         _against(options)
         return
-    sample = np.random.default_rng(1).random(2_000_000)
-    yardstick = float(np.median([timed(np.sort, sample) for _ in range(5)]))
+    yardstick = timing.yardstick()
     base = json.loads(BASELINE.read_text()) if BASELINE.exists() else None
     print(
         f"{options.trials} closings each, {options.threads} thread(s), best of {options.passes}; "

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from benchmarks.timing import Spread
+from icage.planner import METHODS
 
 HERE = Path(__file__).parent
 STEP = " > "
@@ -88,6 +89,50 @@ BENCHMARKS: dict[str, Benchmark] = {
             _per_yardstick("100,000 placements asked", "membership_100k_n100_median"),
             Figure("memory at 300 vertices", "peak_memory_n300_MB", "MB", "lower", 0.1),
         ),
+    ),
+    "growth": Benchmark(
+        "How a plan grows with the number of vertices, 20 to 600",
+        (
+            *(
+                Figure(f"{method}: exponent of n", f"exponent > {method}", "1", "lower", 0.15)
+                for method in METHODS
+            ),
+            *(
+                _per_yardstick(f"{method}, n = {n}", f"rows > method={method}&n={n} > seconds", 0.3)
+                for method in METHODS
+                for n in (20, 150, 600)
+            ),
+        ),
+        quick=("--largest", "150", "--targets", "3", "--repeats", "1"),
+        repeats=True,
+    ),
+    "round_objects": Benchmark(
+        "Round objects, where hands tie",
+        tuple(
+            _per_yardstick(f"{name}, {method}", f"round_{name}_{method}_seconds", 0.3)
+            for name, method in (
+                ("regular_99", "cells"),
+                ("regular_99", "contact-space"),
+                ("regular_199", "cells"),
+                ("regular_500", "cells"),
+                ("regular_1000", "cells"),
+                ("gear_240", "cells"),
+                ("ellipse_200", "cells"),
+            )
+        )
+        + (Figure("regular_1000, memory", "round_regular_1000_cells_MB", "MB", "lower", 0.1),),
+        quick=("--only", "regular_99"),
+        repeats=True,
+    ),
+    "whole_sublevels": Benchmark(
+        "All minima and merges of a hand",
+        tuple(
+            _per_yardstick(f"{name}, both cores", f"sublevels_{name}_seconds_clock", 0.4)
+            for name in ("star_80", "star_300", "comb_300", "spur_300")
+        )
+        + (Figure("star_300, memory", "sublevels_star_300_MB", "MB", "lower", 0.15),),
+        quick=("--only", "star_80"),
+        repeats=True,
     ),
     "discs": Benchmark(
         "Disc fingers against point fingers",

@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
 from benchmarks.figures import BENCHMARKS, figures_of, measured
+from benchmarks.timing import spread
 from experiments.environment import ROOT
 from experiments.figures.drawing.palette import FINGERS, INK, ORANGE, PURPLE
 
@@ -89,6 +90,8 @@ def page(document: dict[str, Any]) -> Iterator[str]:
     yield from machine(document)
     if rows:
         yield from side_by_side(rows, document["benchmarks"]["peers"][0].get("memory_MB", {}))
+    yield from searches(document["benchmarks"].get("grasps", []))
+    yield from how_it_grows(document["benchmarks"].get("growth", []))
     yield from figures(document)
     yield "## Commands"
     yield ""
@@ -188,6 +191,56 @@ def side_by_side(rows: list[dict[str, Any]], memory: dict[str, float]) -> Iterat
         yield ""
 
 
+def searches(runs: list[Any]) -> Iterator[str]:
+    """What a search for grasps takes on each outline."""
+    if not runs:
+        return
+    yield "## The search for grasps"
+    yield ""
+    yield "| outline | n | point fingers [s] | disc fingers [s] | best score, points | discs |"
+    yield "|---|---|---|---|---|---|"
+    rows = runs[0]["rows"]
+    for name in dict.fromkeys(key.rsplit(", ", 1)[0] for key in rows):
+        both = [f"{name}, {fingers}" for fingers in ("points", "discs")]
+        seconds = [
+            _spread(spread(run["rows"][key]["seconds"] for run in runs)) if key in rows else ""
+            for key in both
+        ]
+        best = [f"{rows[key]['best']:.4g}" if key in rows else "" for key in both]
+        vertices = next(rows[key]["vertices"] for key in both if key in rows)
+        yield f"| {name} | {vertices} | {' | '.join(seconds + best)} |"
+    yield ""
+    yield (
+        "The ten best grasps with both cores, in seconds of the clock, after Python's imports; a "
+        "score is sigma_guaranteed / sigma_0 of the grasp. Discs have 2 % of the diameter."
+    )
+    yield ""
+
+
+def how_it_grows(runs: list[Any]) -> Iterator[str]:
+    """A plan by both methods against the number of vertices."""
+    if not runs:
+        return
+    yield "## A plan against the number of vertices"
+    yield ""
+    yield "| n | cells [ms] | contact space [ms] |"
+    yield "|---|---|---|"
+    of = {
+        (row["method"], row["n"]): {key: 1e3 * row["seconds"][key] for key in row["seconds"]}
+        for row in runs[0]["rows"]
+    }
+    for n in dict.fromkeys(row["n"] for row in runs[0]["rows"]):
+        yield f"| {n} | {_spread(of['cells', n])} | {_spread(of['contact-space', n])} |"
+    exponents = runs[0]["exponent"]
+    yield f"| exponent | {_spread(exponents['cells'])} | {_spread(exponents['contact-space'])} |"
+    yield ""
+    yield (
+        "Stars with targets of every kind: medians over the targets, least and largest of the "
+        "repeats. The exponent is that of a power of n fitted to the medians."
+    )
+    yield ""
+
+
 def figures(document: dict[str, Any]) -> Iterator[str]:
     """Every figure that has a baseline."""
     yield "## Every figure"
@@ -205,7 +258,7 @@ def figures(document: dict[str, Any]) -> Iterator[str]:
     yield ""
 
 
-def _spread(value: dict[str, float]) -> str:
+def _spread(value: Mapping[str, Any]) -> str:
     low, middle, high = (value[key] for key in ("min", "median", "max"))
     if low == high:
         return f"{middle:.3g}"

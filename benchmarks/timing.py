@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, TypedDict
 
 import numpy as np
@@ -42,6 +43,11 @@ def timed(work: Callable[[], Any]) -> tuple[float, Any]:
     began = time.process_time()
     done = work()
     return time.process_time() - began, done
+
+
+def seconds_of(work: Callable[..., object], *arguments: object) -> float:
+    """Processor seconds of all threads of one call."""
+    return timed(lambda: work(*arguments))[0]
 
 
 def interleaved(
@@ -82,3 +88,9 @@ import resource, subprocess, sys
 subprocess.run([sys.executable, "-c", sys.argv[1]], check=True)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
+
+
+def peak_of_this_program() -> float:
+    """Peak memory, [MB]; ``ru_maxrss`` would hold what the parent had before the program began."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(float(line.split()[1]) / 1024.0 for line in lines if line.startswith("VmHWM"))

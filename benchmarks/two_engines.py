@@ -21,8 +21,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from benchmarks.planner import star, targets, timed
-from benchmarks.timing import yardstick
+from benchmarks.random_objects import star, targets
+from benchmarks.timing import seconds_of, yardstick
 from experiments.figures.drawing.palette import FINGERS
 from icage.cells.free_space import FreeSpace, search
 from icage.cells.target import contacts_as_configuration, find_target
@@ -54,8 +54,8 @@ def measure(sizes: tuple[int, ...], count: int) -> dict[str, Any]:
                 begin = find_contact_target(plane, contacts, reach=TARGET_SHIFT, turn=TARGET_TURN)
                 if at is None or begin is None:
                     continue
-                cells.append(timed(search, free_space, at.cell, at.sigma_0))
-                contact.append(timed(explore_from, plane, begin.region))
+                cells.append(seconds_of(search, free_space, at.cell, at.sigma_0))
+                contact.append(seconds_of(explore_from, plane, begin.region))
                 found = explore_from(plane, begin.region)
                 log = found.log()
                 counters.append((len(found.regions), log.rectangles_explored, log.nodes))
