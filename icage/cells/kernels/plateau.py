@@ -3,6 +3,7 @@
 # pyright: basic
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ def _cut(corners, count, ax, ay, nx, ny, give, out):
 
 
 @compiled
-def _tip(pieces, before, s):
+def sharp_tip(pieces, before, s):
     """Where two edges of a piece meet in less than a right angle, and the unit bisector into it.
 
     Half planes that give a little reach far beyond a sharp tip: (the tip is sharp, n_x, n_y) of one
@@ -56,9 +57,10 @@ def _tip(pieces, before, s):
     # of an inward normal n the edge runs along (n_y, -n_x)
     x = pieces.normal_y[s] - pieces.normal_y[before]
     y = pieces.normal_x[before] - pieces.normal_x[s]
-    length = np.hypot(x, y)
-    if length * length <= 2.0:
+    square = x * x + y * y
+    if square <= 2.0:
         return False, 0.0, 0.0
+    length = math.sqrt(square)
     return True, x / length, y / length
 
 
@@ -90,7 +92,7 @@ def translations(pieces, z, cell, wx, wy):
                 pieces.normal_x[s], pieces.normal_y[s], give, other,
             )  # fmt: skip
             corners, other = other, corners
-            sharp, nx, ny = _tip(pieces, before, s)
+            sharp, nx, ny = sharp_tip(pieces, before, s)
             if sharp:
                 count = _cut(
                     corners, count, pieces.x[v] - fx, pieces.y[v] - fy, nx, ny, give, other
