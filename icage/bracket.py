@@ -29,6 +29,7 @@ from icage.discs.offsets import offsets
 from icage.errors import GraspError, InputError
 from icage.formats.drawings.read import trace_file
 from icage.formats.drawings.reading import Side
+from icage.geometry.near_frame import NearFrame
 from icage.hand import Placement
 from icage.outline import Outline
 from icage.planner import plan
@@ -126,6 +127,8 @@ def _deepest(cage: Cage, case: Case) -> tuple[FloatArray, float]:
 
 def _level(cage: Cage, outline: Outline, side: Side, row: FloatArray) -> float | None:
     """Level of the escape from a placement; None: never; 0 where it is not free."""
+    frame = NearFrame.of(outline)
+    outline, row = frame.outline_into(outline), frame.rows_into(row)
     if cage.finger_radius > 0.0:
         grown = offsets(outline, cage.finger_radius, _SEGMENTS)
         outline = grown.inner if side == "inside" else grown.outer

@@ -7,7 +7,6 @@ from argparse import Namespace
 from experiments.cases.chosen import best_grasps_of
 from experiments.grasps.wanted_by_options import refuse_limits, wanted_of
 from icage.case import Case
-from icage.discs.offsets import offsets
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.grasps.planned import PlannedGrasps, planned_grasps_of_hand
 from icage.grasps.wanted import Wanted
@@ -33,6 +32,5 @@ def planned_grasps(case: Case, args: Namespace) -> PlannedGrasps:
 def _of_one_hand(case: Case, phi: list[float], wanted: Wanted) -> PlannedGrasps:
     radius = case.finger_radius
     hand = HandShape.from_angles_deg(phi[0], phi[1])
-    grown = offsets(case.outline, radius, 8).inner if radius > 0.0 else case.outline
-    found = grasps_of_hand(grown, hand)
+    found = grasps_of_hand(case.outline, hand, radius)
     return planned_grasps_of_hand(case.outline, radius, hand, found, wanted)

@@ -21,7 +21,7 @@ from icage.contact_space.kernels.columns import (
     TUNNEL_PAIR,
     EdgeKind,
 )
-from icage.contact_space.target import ContactTarget, find_contact_target
+from icage.contact_space.target import ContactTarget, find_contact_target, largest_sigma
 from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
 from icage.geometry.way_out import corners_before_pinch
 from icage.hand import HandShape
@@ -59,7 +59,7 @@ class ContactLocalCage:
         """The cage on this polygon."""
         found, sigma_0 = self.found, self.target.sigma_0
         hand = found.plane.hand
-        largest = _largest_sigma(found) if found.closed_in else None
+        largest = largest_sigma(found) if found.closed_in else None
         top = found.level if largest is None else largest
         if top / sigma_0 - 1.0 < NOT_A_CAGE:
             why = ISOLATED if largest is not None else no_depth_reason(top / sigma_0)
@@ -163,16 +163,6 @@ class ContactSpace:
 
 
 CONTACT_SPACE = ContactSpace()
-
-
-def _largest_sigma(found: Exploration) -> float:
-    """Largest sigma of everything explored: sigma is convex, so at a corner of a region."""
-    plane = found.plane
-    largest = 0.0
-    for region in found.regions:
-        for s, u in plane.corners(region):
-            largest = max(largest, float(np.hypot(*plane.hand_at(region, s, u)[2:])))
-    return largest
 
 
 def _cut_warnings(found: Exploration) -> tuple[str, ...]:

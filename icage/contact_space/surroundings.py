@@ -12,6 +12,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray
 from icage.geometry.exterior import WALL, exterior_pieces
+from icage.geometry.tips import sharp_tips
 from icage.hand import HandShape
 from icage.outline import Outline
 
@@ -36,7 +37,7 @@ class Surroundings(NamedTuple):
 
     Edge q runs counterclockwise from vertex q, with the object on its left. ``turn`` of pair i is
     the paper's R_{i,i+1} as a complex number: X = f_i + turn (f_{i+1} - f_i).
-    [Bunis2018, Sec. IV-B]
+    [Bunis2018, Sec. IV-B] ``tip_*`` are the sharp tips of the pieces (``geometry.tips``).
     """
 
     edge_x: FloatArray
@@ -53,6 +54,11 @@ class Surroundings(NamedTuple):
     slot_length: FloatArray
     slot_next: IntArray
     slot_edge: IntArray
+    tip_ptr: IntArray
+    tip_x: FloatArray
+    tip_y: FloatArray
+    tip_nx: FloatArray
+    tip_ny: FloatArray
     turn_re: FloatArray
     turn_im: FloatArray
     rho: FloatArray
@@ -101,6 +107,7 @@ def surroundings(
     turn = (hand.z[[2, 0, 1]] - hand.z) / ends
     unit = 1.0 / ends
     scale = outline.diameter
+    tips = sharp_tips(pieces)
     return Surroundings(
         edge_x=np.ascontiguousarray(ring[:, 0]),
         edge_y=np.ascontiguousarray(ring[:, 1]),
@@ -116,6 +123,7 @@ def surroundings(
         slot_length=slot_length,
         slot_next=pieces.slot_neighbour,
         slot_edge=slot_edge,
+        **tips._asdict(),
         turn_re=np.ascontiguousarray(turn.real),
         turn_im=np.ascontiguousarray(turn.imag),
         rho=np.abs(unit),

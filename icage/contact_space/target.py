@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
-from icage.contact_space.exploration import Plane, explore_from
+from icage.contact_space.exploration import Exploration, Plane, explore_from
 from icage.errors import GeometryError
-from icage.tolerance import DEPTH_CUT, PASS_ERROR, PLATEAU, SAME_POINT
+from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, PASS_ERROR, PLATEAU, SAME_POINT
 
 _MOST = 100_000
 """Regions round a target that can be looked at in half a minute: many pieces may meet in a vertex
@@ -79,12 +79,23 @@ def find_contact_target(
         if moved <= reach and turned <= turn and low > plane.space.pinch:
             near.append(ContactTarget(region, hand, low, moved, slide))
     near.sort(key=lambda t: (round(t.moved, 12), t.sigma_0, t.region.tolist()))
+    shut: ContactTarget | None = None
+    seen: set[tuple[int, ...]] = set()
     for target in near:
+        if tuple(target.region.tolist()) in seen:
+            continue
         if target.slide:
-            return target
-        if _is_minimum(plane, target):
+            return shut or target
+        around = _search_to_the_cut(plane, target)
+        if not _is_minimum(around, target):
+            continue
+        if not _isolated(around, target):
             return _valley_through(plane, target, near) or target
-    return None
+        # where more fingers are held than are needed, a point of free space may be left behind,
+        # shut off from the minimum beside it: that one is meant
+        shut = shut or target
+        seen |= {tuple(row) for row in around.regions[:, :4].tolist()}
+    return shut
 
 
 def _valley_through(
@@ -118,8 +129,38 @@ def _nearest(plane: Plane, ends: FloatArray, wanted: ComplexArray) -> tuple[Floa
     return ends[0] + t * side, slide
 
 
-def _is_minimum(plane: Plane, target: ContactTarget) -> bool:
-    """Whether nothing deeper can be reached without opening by more than the depth cut."""
-    cut = DEPTH_CUT * plane.outline.diameter
-    found = explore_from(plane, target.region, both_ways=False, stop_above=target.sigma_0 + cut)
-    return not found.escaped and float(found.nodes[:, 0].min()) >= target.sigma_0 - cut
+def _search_to_the_cut(plane: Plane, target: ContactTarget) -> Exploration:
+    """What lies round a minimum up to the depth cut."""
+    top = target.sigma_0 + DEPTH_CUT * plane.outline.diameter
+    return explore_from(plane, target.region, both_ways=False, stop_above=top)
+
+
+def _is_minimum(around: Exploration, target: ContactTarget) -> bool:
+    """Whether nothing deeper can be reached without opening by more than the depth cut.
+
+    ``around`` is the search up to the cut.
+    """
+    cut = DEPTH_CUT * around.plane.outline.diameter
+    return not around.escaped and float(around.nodes[:, 0].min()) >= target.sigma_0 - cut
+
+
+def _isolated(around: Exploration, target: ContactTarget) -> bool:
+    """Whether a hand of this least sigma can do nothing; ``around`` is the search up to the cut."""
+    if around.escaped or len(around.left):
+        return False
+    # that search took tunnel edges downwards only
+    top = target.sigma_0 * (1.0 + 2.0 * NOT_A_CAGE)
+    found = explore_from(around.plane, target.region, stop_above=top)
+    if found.escaped or len(found.left):
+        return False
+    return largest_sigma(found) <= target.sigma_0 * (1.0 + NOT_A_CAGE)
+
+
+def largest_sigma(found: Exploration) -> float:
+    """Largest sigma of everything explored: sigma is convex, so at a corner of a region."""
+    plane = found.plane
+    largest = 0.0
+    for region in found.regions:
+        for s, u in plane.corners(region):
+            largest = max(largest, float(np.hypot(*plane.hand_at(region, s, u)[2:])))
+    return largest

@@ -61,6 +61,9 @@ class GraspEvaluator:
 
     Parameters
     ----------
+    outline:
+        Near its origin (``geometry.near_frame``), as in a search: far from it an offset polygon
+        may have more corners than there are floats for.
     radius:
         [unit] Of the fingers. Discs stand on the inner offset polygon with ``segments`` a quadrant.
     """

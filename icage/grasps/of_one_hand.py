@@ -16,11 +16,15 @@ from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BIRTH_WY, BORN_FI
 from icage.cells.kernels.search import TIE
 from icage.cells.kernels.tree import lowest_cells
 from icage.cells.target import is_local_minimum, plateau_through
+from icage.discs.offsets import offsets
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, SAME_POINT
+
+SEGMENTS = 8
+"""Segments a quadrant of the polygon that stands in for disc fingers."""
 
 MOST_PIECES = 250
 """Pieces of the plane beyond which the table of all cells would not fit into 1 GB."""
@@ -30,8 +34,10 @@ _SAME_HAND = 1e-7
 far below the distance of two minima that a depth of DEPTH_CUT can tell apart."""
 
 
-def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
+def grasps_of_hand(outline: Outline, hand: HandShape, radius: float = 0.0) -> list[FloatArray]:
     """Contacts (3, 2) of all strict local minima of sigma, by sigma, then by contacts.
+
+    Of discs (``radius`` [unit]) they are those of chords, ``SEGMENTS`` a quadrant.
 
     Raises
     ------
@@ -45,7 +51,11 @@ def grasps_of_hand(outline: Outline, hand: HandShape) -> list[FloatArray]:
     3
     """
     frame = NearFrame.of(outline)
-    free_space = FreeSpace.around(frame.outline_into(outline), hand)
+    near = frame.outline_into(outline)
+    if radius > 0.0:
+        # far from the origin a grown polygon has more corners than there are floats for
+        near = offsets(near, radius, SEGMENTS).inner
+    free_space = FreeSpace.around(near, hand)
     pieces = free_space.pieces
     if pieces.total > MOST_PIECES:
         raise InputError(

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from icage.errors import InputError
+from icage.geometry.near_frame import NearFrame
 from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.wanted import ANY_HAND, Wanted
 from icage.outline import Outline
@@ -145,8 +146,9 @@ def agree_or_refuse(arguments: tuple[str, ...]) -> int:
 
 def grasps_on(outline: Outline, radius: float) -> list[Floats]:
     """Contacts of a few grasps that the search takes for cages; radius in [unit]."""
-    bench = GraspEvaluator(outline, radius, Wanted(limits=ANY_HAND))
+    frame = NearFrame.of(outline)  # the evaluator, like all within the search, knows no other
+    bench = GraspEvaluator(frame.outline_into(outline), radius, Wanted(limits=ANY_HAND))
     triples, points = bench.triples()
     few = np.linspace(0, len(triples) - 1, min(TRIED, len(triples)), dtype=int)
     found = [bench.at(triples[k], points[k]) for k in few]
-    return [one.contacts for one in found if one is not None][:KEPT]
+    return [frame.back(one.contacts) for one in found if one is not None][:KEPT]

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from icage.cells.kernels.plateau import sharp_tip
 from icage.kernels.compiled import compiled
 
 _INSIDE = 1e-9
@@ -16,12 +17,17 @@ the angle between two edges."""
 
 @compiled
 def _holds(pieces, k, x, y, give):
-    """Whether a point is in piece k, or outside by at most ``give``."""
+    """Whether a point is in piece k, or outside by at most ``give``, beyond sharp tips too."""
+    before = pieces.ptr[k + 1] - 1
     for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
         v = pieces.slot_vertex[s]
         gap = pieces.normal_x[s] * (x - pieces.x[v]) + pieces.normal_y[s] * (y - pieces.y[v])
         if gap < -give:
             return False
+        sharp, nx, ny = sharp_tip(pieces, before, s)
+        if sharp and nx * (x - pieces.x[v]) + ny * (y - pieces.y[v]) < -give:
+            return False
+        before = s
     return True
 
 

@@ -3,6 +3,7 @@
 # pyright: basic
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -47,11 +48,31 @@ def _cut(corners, count, ax, ay, nx, ny, give, out):
 
 
 @compiled
+def sharp_tip(pieces, before, s):
+    """Where two edges of a piece meet in less than a right angle, and the unit bisector into it.
+
+    Half planes that give a little reach far beyond a sharp tip: (the tip is sharp, n_x, n_y) of one
+    more, across it, that does not.
+    """
+    # of an inward normal n the edge runs along (n_y, -n_x)
+    x = pieces.normal_y[s] - pieces.normal_y[before]
+    y = pieces.normal_x[before] - pieces.normal_x[s]
+    square = x * x + y * y
+    if square <= 2.0:
+        return False, 0.0, 0.0
+    length = math.sqrt(square)
+    return True, x / length, y / length
+
+
+@compiled
 def translations(pieces, z, cell, wx, wy):
-    """Corners d (n, 2) of the convex set of hands in a cell that have this very w."""
+    """Corners d (n, 2) of the convex set of hands in a cell that have this very w.
+
+    Every finger may be a little outside its piece, but not further beyond a tip than elsewhere.
+    """
     room = 4
     for f in range(len(z)):
-        room += 2 * (pieces.ptr[cell[f] + 1] - pieces.ptr[cell[f]])
+        room += 3 * (pieces.ptr[cell[f] + 1] - pieces.ptr[cell[f]])
     corners = np.empty((room, 2))
     other = np.empty((room, 2))
     give = SLIDE_GIVE * pieces.diameter
@@ -59,6 +80,7 @@ def translations(pieces, z, cell, wx, wy):
     for f in range(len(z)):
         fx = wx * z[f, 0] - wy * z[f, 1]
         fy = wx * z[f, 1] + wy * z[f, 0]
+        before = pieces.ptr[cell[f] + 1] - 1
         for s in range(pieces.ptr[cell[f]], pieces.ptr[cell[f] + 1]):
             v = pieces.slot_vertex[s]
             if f == 0:
@@ -70,6 +92,13 @@ def translations(pieces, z, cell, wx, wy):
                 pieces.normal_x[s], pieces.normal_y[s], give, other,
             )  # fmt: skip
             corners, other = other, corners
+            sharp, nx, ny = sharp_tip(pieces, before, s)
+            if sharp:
+                count = _cut(
+                    corners, count, pieces.x[v] - fx, pieces.y[v] - fy, nx, ny, give, other
+                )
+                corners, other = other, corners
+            before = s
     return corners[:count].copy()
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from icage.kernels.compiled import compiled
 
 MOST_CORNERS = 48
-"""Room for the corners of a region: 4 + one or two for every edge of a piece."""
+"""Room for the corners of a region: 4 + one or two for every edge of a piece and both sharp tips."""
 
 S_LOW, U_LOW, S_HIGH, U_HIGH, FIRST_SLOT = 0, 1, 2, 3, 4
 """Labels of a region's boundary: a finger at the start or end of its edge, then the slots."""
@@ -88,11 +88,36 @@ def clearance(space, i, j, k, slot):
 
 
 @compiled
+def _clipped(corners, count, h0, hs, hu, tol, spare):
+    """Corners where h0 + hs s + hu u is not below 0, in ``corners`` again; returns how many."""
+    out = 0
+    before = h0 + hs * corners[count - 1, 0] + hu * corners[count - 1, 1]
+    for a in range(count):
+        s, u = corners[a, 0], corners[a, 1]
+        here = h0 + hs * s + hu * u
+        if (here < -tol and before > tol) or (here > tol and before < -tol):
+            b = a - 1 if a > 0 else count - 1
+            t = before / (before - here)
+            spare[out, 0] = corners[b, 0] + t * (s - corners[b, 0])
+            spare[out, 1] = corners[b, 1] + t * (u - corners[b, 1])
+            out += 1
+        if here >= -tol:
+            spare[out, 0], spare[out, 1] = s, u
+            out += 1
+        before = here
+    for a in range(out):
+        corners[a, 0], corners[a, 1] = spare[a, 0], spare[a, 1]
+    return out
+
+
+@compiled
 def region_corners(space, i, j, k, c, corners, spare):
     """Corners (count, 2) of region (i, j, k, c), counterclockwise; returns count (0: empty).
 
     A corner within the clip tolerance of a line is on it and stays where it is; so a region may
     come out as a segment or a point, touched by the lines that make it so: touching is free.
+    Beyond the tip of a sliver a point may be that near to both of its edges and far from it: the
+    lines across sharp tips are clipped by, too.
     """
     long_s, long_u = space.edge_length[j], space.edge_length[k]
     corners[0, 0], corners[0, 1] = 0.0, 0.0
@@ -100,29 +125,18 @@ def region_corners(space, i, j, k, c, corners, spare):
     corners[2, 0], corners[2, 1] = long_s, long_u
     corners[3, 0], corners[3, 1] = 0.0, long_u
     count = 4
-    tol = space.clip
     for slot in range(space.ptr[c], space.ptr[c + 1]):
         h0, hs, hu = clearance(space, i, j, k, slot)
-        out = 0
-        before = h0 + hs * corners[count - 1, 0] + hu * corners[count - 1, 1]
-        for a in range(count):
-            s, u = corners[a, 0], corners[a, 1]
-            here = h0 + hs * s + hu * u
-            if (here < -tol and before > tol) or (here > tol and before < -tol):
-                b = a - 1 if a > 0 else count - 1
-                t = before / (before - here)
-                spare[out, 0] = corners[b, 0] + t * (s - corners[b, 0])
-                spare[out, 1] = corners[b, 1] + t * (u - corners[b, 1])
-                out += 1
-            if here >= -tol:
-                spare[out, 0], spare[out, 1] = s, u
-                out += 1
-            before = here
-        if out == 0:
+        count = _clipped(corners, count, h0, hs, hu, space.clip, spare)
+        if count == 0:
             return 0
-        for a in range(out):
-            corners[a, 0], corners[a, 1] = spare[a, 0], spare[a, 1]
-        count = out
+    for tip in range(space.tip_ptr[c], space.tip_ptr[c + 1]):
+        h0, hs, hu = along(
+            space, i, j, k, space.tip_nx[tip], space.tip_ny[tip], space.tip_x[tip], space.tip_y[tip]
+        )
+        count = _clipped(corners, count, h0, hs, hu, space.clip, spare)
+        if count == 0:
+            return 0
     return count
 
 

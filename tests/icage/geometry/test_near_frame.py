@@ -27,7 +27,7 @@ from icage.formats.case_json import read_case
 from icage.formats.plan_json import plan_document
 from icage.geometry.near_frame import NearFrame
 from icage.grasps.of_one_hand import grasps_of_hand
-from icage.hand import Placement
+from icage.hand import HandShape, Placement
 from icage.outline import Outline
 from icage.planner import plan
 from models import CASES
@@ -163,6 +163,15 @@ def assert_close(a: Any, b: Any, within: float, at: str = "") -> None:
         assert abs(a - b) <= within, (at, a, b)
     else:
         assert a == b, at
+
+
+def test_grasps_of_discs_on_an_object_of_few_floats() -> None:
+    """So far off that its grown polygon has more corners than there are floats between."""
+    hexagon = np.array([[0, 0], [1, -1], [4, 3], [6, 2], [4, 5], [0, 4]]) * 2.0**-39
+    hand = HandShape.from_angles_deg(60.0, 120.0)
+    here = grasps_of_hand(Outline(hexagon), hand, 1e-12)
+    there = grasps_of_hand(Outline(hexagon + 2.0**13), hand, 1e-12)
+    assert len(here) == len(there) > 0
 
 
 def test_no_failure_of_a_union_leaves_the_planner(monkeypatch: pytest.MonkeyPatch) -> None:
