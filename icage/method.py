@@ -51,7 +51,12 @@ class Method(Protocol):
         ...
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> LocalCage | None:
-        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        beside: LocalCage | None = None,
+    ) -> LocalCage | None:  # fmt: skip
+        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None.
+
+        ``beside`` is one that was found on a polygon that has the same vertices, each a little
+        further out or just there: what does not depend on where they are may be taken from it.
+        """
         ...

@@ -15,6 +15,7 @@ from icage.cells.work import CageWork
 from icage.errors import GeometryError
 from icage.geometry.statics import ISOLATED, no_depth_reason
 from icage.hand import HandShape
+from icage.method import LocalCage
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, DEPTH_FINE, DEPTH_ROUGH, NOT_A_CAGE
 
@@ -63,10 +64,12 @@ class Cells:
         return cage_on(free_space, contacts, target, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> CellsLocalCage | None:
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        beside: LocalCage | None = None,
+    ) -> CellsLocalCage | None:  # fmt: skip
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        free_space = FreeSpace.around(polygon, hand)
+        cut = beside.found.free_space if isinstance(beside, CellsLocalCage) else None
+        free_space = FreeSpace.beside(polygon, hand, cut)
         wanted = contacts_as_configuration(free_space, contacts)
         target = find_target(free_space, wanted, reach=reach, turn=turn)
         if target is None or target.plateau is not None:

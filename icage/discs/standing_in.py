@@ -26,10 +26,6 @@ from icage.errors import GeometryError
 from icage.method import LocalCage, Method
 from icage.outline import Outline
 
-_COARSE = 4
-"""Segments a quadrant of the outer polygon that only bounds a level, tried first. For one that
-names features 4 are too few: of 600 targets two then had a wrong sigma_first or one grasp twice."""
-
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
 
@@ -62,6 +58,9 @@ class Solved(NamedTuple):
     sagitta: float
     """[unit] How far the polygon lies off the curve at most."""
     again: bool = False
+    tangents: Outline | None = None
+    """The outer polygon through the same contacts, where this is an inner one's that has its
+    vertices right beneath those of it."""
 
 
 class Bound(NamedTuple):
@@ -106,13 +105,13 @@ class Polygons:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
             through = self.curve.on_arcs(self.true)
-        local_cage = self._local_cage(self._outer_polygon(self.segments, through), self.segments)
+        local_cage = self._local_cage(self._outer_polygon(through))
         if local_cage is None:
             return None
         cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
         if cage.status == "not_a_cage":
             return None
-        return self._solved(local_cage, cage, through, self.segments)
+        return self._solved(local_cage, cage, through)
 
     def begin(self, outer: Solved | None) -> FloatArray:
         """Contacts (k, 2) on arcs that an inner polygon is drawn through first."""
@@ -129,8 +128,8 @@ class Polygons:
         found: Solved | None = None
         last: TrueLevels | None = None
         for _ in range(_ROUNDS):
-            polygon = self.curve.inner(self.segments, through)
-            local_cage = self._local_cage(polygon, self.segments)
+            polygon, tangents = self._polygons(through)
+            local_cage = self._local_cage(polygon)
             if local_cage is None:
                 if self.target is not None:
                     return None
@@ -140,7 +139,7 @@ class Polygons:
             cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
-            found = self._solved(local_cage, cage, through, self.segments)
+            found = self._solved(local_cage, cage, through)._replace(tangents=tangents)
             new = self._new_on_arcs(found, through)
             if not len(new):
                 break
@@ -169,16 +168,19 @@ class Polygons:
                 break
             if len(more):
                 through = np.vstack([through, more])
-                drawn = self._drawn_close(through, levels.sigma_max)
+                if inner.tangents is not None and len(through) == len(inner.through):
+                    drawn = self._local_cage(inner.tangents, inner.local_cage)
+                else:
+                    drawn = self._local_cage(self._outer_polygon(through))
                 if drawn is None:
                     return None
-                outer, segments = drawn
+                outer = drawn
                 if _encloses(outer, levels):
                     break
                 cage = outer.cage(self.contacts, self.curve.outline, self.curve.radius)
                 if cage.status == "not_a_cage":
                     break
-                own = self._solved(outer, cage, through, segments)
+                own = self._solved(outer, cage, through)
             else:
                 own = coarse
             more = self._new_on_arcs(own, through)
@@ -186,23 +188,6 @@ class Polygons:
             if not len(more) or not agree(own.levels, levels):
                 break
         return Bound(outer, coarse.levels, own)
-
-    def _drawn_close(
-        self, through: FloatArray, level: float | None
-    ) -> tuple[LocalCage, int] | None:
-        """The outer polygon through these contacts (k, 2), and its segments: few if these will do.
-
-        None if the target is held by none.
-        """
-        found: list[tuple[LocalCage, int]] = []
-        for segments in (_COARSE, self.segments):
-            polygon = self._outer_polygon(segments, through)
-            local_cage = self._local_cage(polygon, segments)
-            if local_cage is not None:
-                found.append((local_cage, segments))
-                if near(_finite(local_cage.sigma_max), level, TIGHT):
-                    break
-        return min(found, key=lambda one: one[0].sigma_max, default=None)
 
     def named_by(self, bound: Bound | None, inner: Solved) -> FloatArray:
         """Contacts (k, 2) of other punctures that the outer polygon takes for the levels.
@@ -214,31 +199,42 @@ class Polygons:
             return np.empty((0, 2))
         return self._new_on_arcs(bound.own, inner.through)
 
-    def _local_cage(self, polygon: Outline, segments: int) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline, beside: LocalCage | None = None) -> LocalCage | None:
         """What is round the target, which rests on short chords or else anywhere on long ones."""
         chords = [0.0]
         if len(self.curve.on_arcs(self.true)):
             radius = self.curve.radius
-            chords = [2.0 * RESTING * radius, quadrant_chord(radius, segments)]
+            chords = [2.0 * RESTING * radius, quadrant_chord(radius, self.segments)]
         for chord in chords:
-            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method)
+            found = local_cage_on(
+                polygon, self.critical.hand, self.true, chord, self.method, beside
+            )
             if found is not None:
                 return found
         return None
 
-    def _outer_polygon(self, segments: int, through: FloatArray) -> Outline:
+    def _polygons(self, through: FloatArray) -> tuple[Outline, Outline | None]:
+        """Chords through these contacts, and the tangents whose corners are right above their ends.
+
+        None for these where two of them cross.
+        """
+        try:
+            outer, inner = self.curve.outer_and_inner(self.segments, through)
+        except GeometryError:
+            return self.curve.inner(self.segments, through), None
+        return inner, outer
+
+    def _outer_polygon(self, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
         curve = self.curve
         try:
-            return curve.outer(segments, through)
+            return curve.outer(self.segments, through)
         except GeometryError:
             arcs = directions_on_arcs(curve.outline, curve.radius, through)
-            return offsets(curve.outline, curve.radius, segments, arcs).outer
+            return offsets(curve.outline, curve.radius, self.segments, arcs).outer
 
-    def _solved(
-        self, local_cage: LocalCage, cage: Cage, through: FloatArray, segments: int
-    ) -> Solved:
-        sagitta = self.curve.sagitta(segments)
+    def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> Solved:
+        sagitta = self.curve.sagitta(self.segments)
         levels = true_levels(self.critical, cage, sagitta, self.target)
         return Solved(local_cage, cage, levels, through, sagitta)
 
