@@ -27,7 +27,7 @@ from icage.cells.kernels.columns import (
 from icage.cells.kernels.facet import ends_on_facet, middles_on_facets
 from icage.cells.kernels.search import explore
 from icage.cells.kernels.tree import merge, visited_births
-from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma, pieces_beside
+from icage.geometry.exterior import Pieces, exterior_pieces, largest_sigma
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.tolerance import DEPTH_CUT, LEVEL, PASS_ERROR
@@ -60,15 +60,6 @@ class FreeSpace:
         """Cut the plane around the outline; ``merge=False`` keeps raw triangles."""
         pieces, origin = exterior_pieces(outline, hand, merge=merge)
         return cls.of_pieces(outline, hand, pieces, origin)
-
-    @classmethod
-    def beside(cls, outline: Outline, hand: HandShape, other: FreeSpace | None) -> FreeSpace:
-        """The same, cut as another one was, if that is of nearly the same outline and that will do.
-
-        ``other`` may be None: there is none. See ``pieces_beside``.
-        """
-        cut = None if other is None else pieces_beside(other.pieces, outline, hand)
-        return cls.around(outline, hand) if cut is None else cls.of_pieces(outline, hand, *cut)
 
     @classmethod
     def of_pieces(

@@ -25,7 +25,6 @@ from icage.contact_space.target import ContactTarget, find_contact_target
 from icage.geometry.statics import ISOLATED, contacts_reason, no_depth_reason
 from icage.geometry.way_out import corners_before_pinch
 from icage.hand import HandShape
-from icage.method import LocalCage
 from icage.outline import Outline
 from icage.tolerance import (
     DEPTH_CUT,
@@ -87,6 +86,9 @@ class ContactLocalCage:
             search=found.log(),
         )
 
+    def bound_above(self, polygon: Outline, contacts: FloatArray, first: float) -> None:
+        """Nothing: what the plane is split into changes with every corner."""
+
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None.
 
@@ -141,7 +143,6 @@ class ContactSpace:
         radius: float,
     ) -> Cage:  # fmt: skip
         """The cage of point fingers on a polygon, or why there is none."""
-        del beside  # rectangles depend on where every corner is
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=TARGET_SHIFT, turn=TARGET_TURN)
         if target is None or target.slide:
@@ -150,9 +151,8 @@ class ContactSpace:
         return self._explored(plane, target).cage(contacts, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
-        beside: LocalCage | None = None,
-    ) -> ContactLocalCage | None:  # fmt: skip
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> ContactLocalCage | None:
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=reach, turn=turn)

@@ -23,7 +23,7 @@ from icage.discs.hidden import hidden_minima
 from icage.discs.offsets import directions_on_arcs, offsets
 from icage.discs.true_levels import REACH, SAME, TrueLevels, true_levels
 from icage.errors import GeometryError
-from icage.method import LocalCage, Method
+from icage.method import LocalCage, Method, UpperBound
 from icage.outline import Outline
 
 _ROUNDS = 4
@@ -66,7 +66,7 @@ class Solved(NamedTuple):
 class Bound(NamedTuple):
     """What encloses the solved levels from above, and the levels solved from tangents."""
 
-    local_cage: LocalCage
+    upper: UpperBound
     levels: TrueLevels
     """Of the outer polygon that names features."""
     own: Solved | None
@@ -160,7 +160,8 @@ class Polygons:
             coarse = self.outer_levels(inner.through)
             if coarse is None:
                 return None
-        outer, through = coarse.local_cage, coarse.through
+        outer: UpperBound = coarse.local_cage
+        through = coarse.through
         own: Solved | None = None
         more = inner.through[len(through) :]
         for _ in range(_ROUNDS):
@@ -168,19 +169,20 @@ class Polygons:
                 break
             if len(more):
                 through = np.vstack([through, more])
-                if inner.tangents is not None and len(through) == len(inner.through):
-                    drawn = self._local_cage(inner.tangents, inner.local_cage)
-                else:
-                    drawn = self._local_cage(self._outer_polygon(through))
+                above = self._above(inner, through)
+                if above is not None:
+                    outer = above
+                    break
+                drawn = self._local_cage(self._outer_polygon(through))
                 if drawn is None:
                     return None
                 outer = drawn
-                if _encloses(outer, levels):
+                if _encloses(drawn, levels):
                     break
-                cage = outer.cage(self.contacts, self.curve.outline, self.curve.radius)
+                cage = drawn.cage(self.contacts, self.curve.outline, self.curve.radius)
                 if cage.status == "not_a_cage":
                     break
-                own = self._solved(outer, cage, through)
+                own = self._solved(drawn, cage, through)
             else:
                 own = coarse
             more = self._new_on_arcs(own, through)
@@ -188,6 +190,19 @@ class Polygons:
             if not len(more) or not agree(own.levels, levels):
                 break
         return Bound(outer, coarse.levels, own)
+
+    def _above(self, inner: Solved, through: FloatArray) -> UpperBound | None:
+        """The bound on the tangents above the chords of an inner polygon; None if it is no tight
+        one, or if these are not the contacts that they were drawn through.
+        """
+        levels = inner.levels
+        if inner.tangents is None or len(through) != len(inner.through):
+            return None
+        first = levels.sigma_first
+        if first is None or first == levels.sigma_max:
+            first = np.inf
+        found = inner.local_cage.bound_above(inner.tangents, self.true, first)
+        return found if found is not None and _encloses(found, levels) else None
 
     def named_by(self, bound: Bound | None, inner: Solved) -> FloatArray:
         """Contacts (k, 2) of other punctures that the outer polygon takes for the levels.
@@ -199,16 +214,14 @@ class Polygons:
             return np.empty((0, 2))
         return self._new_on_arcs(bound.own, inner.through)
 
-    def _local_cage(self, polygon: Outline, beside: LocalCage | None = None) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline) -> LocalCage | None:
         """What is round the target, which rests on short chords or else anywhere on long ones."""
         chords = [0.0]
         if len(self.curve.on_arcs(self.true)):
             radius = self.curve.radius
             chords = [2.0 * RESTING * radius, quadrant_chord(radius, self.segments)]
         for chord in chords:
-            found = local_cage_on(
-                polygon, self.critical.hand, self.true, chord, self.method, beside
-            )
+            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method)
             if found is not None:
                 return found
         return None
@@ -272,7 +285,7 @@ def _finite(level: float) -> float | None:
     return level if np.isfinite(level) else None
 
 
-def _encloses(outer: LocalCage, levels: TrueLevels) -> bool:
+def _encloses(outer: UpperBound, levels: TrueLevels) -> bool:
     """Whether the levels of an outer polygon are the solved ones: nothing is left between."""
     if not near(_finite(outer.sigma_max), levels.sigma_max, INSIDE):
         return False

@@ -122,10 +122,19 @@ def exterior_pieces(
     return _as_pieces(vertices, rings, outline.diameter), origin
 
 
-def pieces_beside(
-    pieces: Pieces, outline: Outline, hand: HandShape
-) -> tuple[Pieces, FloatArray] | None:
-    """The pieces of another outline, cut in the same way; None if they would not be convex.
+class Beside(NamedTuple):
+    """Pieces of an outline that is nearly another one, cut as that was, and their origin (2,).
+
+    ``bent`` are those that are not convex here: of these only what all half planes hold is theirs.
+    """
+
+    pieces: Pieces
+    origin: FloatArray
+    bent: BoolArray
+
+
+def pieces_beside(pieces: Pieces, outline: Outline, hand: HandShape) -> Beside | None:
+    """The pieces of another outline, cut in the same way; None if they cannot be.
 
     ``outline`` is, vertex for vertex, one that the pieces are for, moved by a little; its first
     vertex is that one's, bit for bit.
@@ -146,14 +155,17 @@ def pieces_beside(
     following[pieces.ptr[1:] - 1] = pieces.ptr[:-1]
     first = pieces.slot_vertex
     second = first[following]
-    if not _turn_left(x, y, first, second, second[following], moved):
-        return None
+    left = _turn_left(x, y, first, second, second[following], moved)
+    owner = np.repeat(np.arange(pieces.total), np.diff(pieces.ptr))
+    bent = np.zeros(pieces.total, dtype=np.bool_)
+    bent[owner[~left]] = True
     side_x, side_y = x[second] - x[first], y[second] - y[first]
     length = np.hypot(side_x, side_y)
-    return pieces._replace(
+    beside = pieces._replace(
         x=x, y=y, normal_x=-side_y / length, normal_y=side_x / length, scale=outline.diameter,
         diameter=outline.diameter,
-    ), origin  # fmt: skip
+    )  # fmt: skip
+    return Beside(beside, origin, bent)
 
 
 def _margin(outline: Outline, hand: HandShape) -> float:
@@ -164,12 +176,12 @@ def _margin(outline: Outline, hand: HandShape) -> float:
 
 def _turn_left(
     x: FloatArray, y: FloatArray, a: IntArray, b: IntArray, c: IntArray, moved: BoolArray
-) -> bool:
-    """Whether every corner a, b, c turns left for certain, but for those that have not moved."""
+) -> BoolArray:
+    """Which corners a, b, c turn left for certain; those that have not moved do."""
     left = (x[a] - x[c]) * (y[b] - y[c])
     right = (y[a] - y[c]) * (x[b] - x[c])
     certain = left - right > FILTER * (np.abs(left) + np.abs(right))
-    return bool((certain | ~(moved[a] | moved[b] | moved[c])).all())
+    return certain | ~(moved[a] | moved[b] | moved[c])
 
 
 def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) -> Pieces:
