@@ -34,8 +34,13 @@ class UpperBound(Protocol):
 class LocalCage(UpperBound, Protocol):
     """A strict minimum on one polygon, and the levels round it."""
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
-        """The cage on this polygon, of an outline and a radius that it stands for."""
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
+        """The cage on this polygon, of an outline and a radius that it stands for.
+
+        Without ``way`` it need not have an escape path.
+        """
         ...
 
     def bound_above(

@@ -17,7 +17,8 @@ from icage.cells.free_space import Configuration, FreeSpace, Search, search
 from icage.cells.kernels.along import Way, way_through
 from icage.cells.kernels.columns import EDGE_FROM, PASS_SIGMA
 from icage.cells.minima import path_edges, way_to_a_pinch
-from icage.geometry.exterior import pieces_beside
+from icage.cells.kernels.facet import CLEARANCE
+from icage.geometry.exterior import Beside, pieces_beside
 from icage.outline import Outline
 
 _IN_ONE_PIECE = 3
@@ -61,8 +62,6 @@ def bound_above(
     if cut is None:
         return None
     cells = np.vstack([found.cells[found.edges[edges, EDGE_FROM]], found.cells[-1:]])
-    if cut.bent[cells].any():
-        return None
     free_space = FreeSpace.of_pieces(polygon, found.free_space.hand, cut.pieces, cut.origin)
     d, w = complex(*(contacts[0] - cut.origin)), complex(*(contacts[1] - contacts[0]))
     hand = np.array([d.real, d.imag, w.real, w.imag])
@@ -70,7 +69,7 @@ def bound_above(
         cut.pieces, free_space.z, hand, cells[:-1], found.edges[edges], cells[-1], free_space.cap,
         free_space.worst,
     )  # fmt: skip
-    if not way.begins or way.standing < 0:
+    if not way.begins or way.standing < 0 or not _keeps_clear(cut, cells, way, free_space):
         return None
     level = float(way.passes[:, PASS_SIGMA].max())
     if first < level:
@@ -78,6 +77,25 @@ def bound_above(
         if level is None:
             return None
     return BoundAbove(free_space, Configuration(d, w), way, level)
+
+
+def _keeps_clear(cut: Beside, cells: IntArray, way: Way, free_space: FreeSpace) -> bool:
+    """Whether the way keeps to the convex part of pieces that are not convex.
+
+    At every pass it does so on both sides, and in between it is straight.
+    """
+    d, w = way.hands[:, :2] @ [1.0, 1.0j], way.hands[:, 2:] @ [1.0, 1.0j]
+    fingers = d[:, None] + w[:, None] * free_space.hand.z
+    pieces = cut.pieces
+    for piece in np.flatnonzero(cut.bent):
+        at = fingers[(cells[:-1] == piece) | (cells[1:] == piece)]
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            corner = pieces.slot_vertex[s]
+            gap = pieces.normal_x[s] * (at.real - pieces.x[corner])
+            gap += pieces.normal_y[s] * (at.imag - pieces.y[corner])
+            if (gap < -CLEARANCE * pieces.scale).any():
+                return False
+    return True
 
 
 def _first_level(

@@ -37,9 +37,12 @@ class CellsLocalCage:
         """First level."""
         return self.found.sigma_first()
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
         """The cage on this polygon."""
-        return cage_on(self.found.free_space, contacts, self.target, outline, radius, self.found)
+        space = self.found.free_space
+        return cage_on(space, contacts, self.target, outline, radius, self.found, way=way)
 
     def bound_above(
         self, polygon: Outline, contacts: FloatArray, first: float
@@ -94,10 +97,13 @@ def cage_on(
     outline: Outline,
     radius: float = 0.0,
     known: Search | None = None,
+    *,
+    way: bool = True,
 ) -> Cage:
     """The cage of a target on the polygon of a free space, whose fingers are points.
 
-    ``known`` is the search from the target, where it has been made already.
+    ``known`` is the search from the target, where it has been made already. Without ``way`` there
+    is no escape path.
     """
     hand = free_space.hand
     if target is None:
@@ -116,7 +122,7 @@ def cage_on(
         why = ISOLATED if largest is not None else no_depth_reason(top / target.sigma_0)
         return not_a_cage(outline, hand, contacts, why, radius)
     size = free_space.pieces.diameter
-    path, gap = escape_path(found, target) if found.escaped else (None, None)
+    path, gap = escape_path(found, target) if found.escaped and way else (None, None)
     first = punctures[0].sigma if punctures else None
     return Cage(
         outline=outline,

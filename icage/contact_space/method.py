@@ -55,7 +55,9 @@ class ContactLocalCage:
         """First level."""
         return first_level(self.found)
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
         """The cage on this polygon."""
         found, sigma_0 = self.found, self.target.sigma_0
         hand = found.plane.hand
@@ -65,7 +67,7 @@ class ContactLocalCage:
             why = ISOLATED if largest is not None else no_depth_reason(top / sigma_0)
             return not_a_cage(outline, hand, contacts, why, radius)
         grasps, punctures = grasps_and_punctures(found, self.target)
-        path, gap = self.escape_path() or (None, None)
+        path, gap = (self.escape_path() if way else None) or (None, None)
         return Cage(
             outline=outline,
             hand=hand,

@@ -43,7 +43,6 @@ def plan_discs(
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     try:
         curve = TrueCurve.of(outline, radius)
-        curve.inner(SEGMENTS[0])
     except GeometryError:
         check_disc_contacts(outline, radius, contacts)
         return plan_by_resolutions(outline, hand, contacts, radius, method)
@@ -51,8 +50,9 @@ def plan_discs(
     critical = CriticalHands(outline, radius, hand)
     target = _target(critical, contacts)
     true = contacts if target is None else target.contacts
+    resting = curve.on_arcs(true)
     for segments in SEGMENTS:
-        look = Polygons(curve, critical, method, contacts, true, target, segments)
+        look = Polygons(curve, critical, method, contacts, true, target, resting, segments)
         inner, bound = look.levels()
         if isinstance(inner, Cage):
             return inner

@@ -83,6 +83,8 @@ class Polygons:
     contacts: FloatArray
     true: FloatArray
     target: Critical | None
+    resting: FloatArray
+    """Those of the contacts ``true`` (k, 2) that are on an arc."""
     segments: int
 
     def levels(self) -> tuple[Solved | Cage | None, Bound | None]:
@@ -104,18 +106,18 @@ class Polygons:
     def outer_levels(self, through: FloatArray | None = None) -> Solved | None:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
-            through = self.curve.on_arcs(self.true)
+            through = self.resting
         local_cage = self._local_cage(self._outer_polygon(through))
         if local_cage is None:
             return None
-        cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
+        cage = self._cage(local_cage)
         if cage.status == "not_a_cage":
             return None
         return self._solved(local_cage, cage, through)
 
     def begin(self, outer: Solved | None) -> FloatArray:
         """Contacts (k, 2) on arcs that an inner polygon is drawn through first."""
-        through = self.curve.on_arcs(self.true)
+        through = self.resting
         if outer is not None:
             through = np.vstack([through, self._new_on_arcs(outer, through, hidden=True)])
         return through
@@ -129,6 +131,8 @@ class Polygons:
         last: TrueLevels | None = None
         for _ in range(_ROUNDS):
             polygon, tangents = self._polygons(through)
+            if polygon is None:
+                return None
             local_cage = self._local_cage(polygon)
             if local_cage is None:
                 if self.target is not None:
@@ -136,7 +140,7 @@ class Polygons:
                 hand, curve = self.critical.hand, self.curve
                 cage = self.method.cage(polygon, hand, self.contacts, curve.outline, curve.radius)
                 return replace(cage, contacts=self.contacts)
-            cage = local_cage.cage(self.contacts, self.curve.outline, self.curve.radius)
+            cage = self._cage(local_cage)
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
             found = self._solved(local_cage, cage, through)._replace(tangents=tangents)
@@ -179,7 +183,7 @@ class Polygons:
                 outer = drawn
                 if _encloses(drawn, levels):
                     break
-                cage = drawn.cage(self.contacts, self.curve.outline, self.curve.radius)
+                cage = self._cage(drawn)
                 if cage.status == "not_a_cage":
                     break
                 own = self._solved(drawn, cage, through)
@@ -214,10 +218,14 @@ class Polygons:
             return np.empty((0, 2))
         return self._new_on_arcs(bound.own, inner.through)
 
+    def _cage(self, local_cage: LocalCage) -> Cage:
+        """The cage on one polygon; its way out is not asked for, the bound from above has one."""
+        return local_cage.cage(self.contacts, self.curve.outline, self.curve.radius, way=False)
+
     def _local_cage(self, polygon: Outline) -> LocalCage | None:
         """What is round the target, which rests on short chords or else anywhere on long ones."""
         chords = [0.0]
-        if len(self.curve.on_arcs(self.true)):
+        if len(self.resting):
             radius = self.curve.radius
             chords = [2.0 * RESTING * radius, quadrant_chord(radius, self.segments)]
         for chord in chords:
@@ -226,16 +234,20 @@ class Polygons:
                 return found
         return None
 
-    def _polygons(self, through: FloatArray) -> tuple[Outline, Outline | None]:
+    def _polygons(self, through: FloatArray) -> tuple[Outline | None, Outline | None]:
         """Chords through these contacts, and the tangents whose corners are right above their ends.
 
-        None for these where two of them cross.
+        None for what runs into itself.
         """
         try:
             outer, inner = self.curve.outer_and_inner(self.segments, through)
+            return inner, outer
         except GeometryError:
+            pass
+        try:
             return self.curve.inner(self.segments, through), None
-        return inner, outer
+        except GeometryError:
+            return None, None
 
     def _outer_polygon(self, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
