@@ -70,7 +70,11 @@ class Method(Protocol):
         ...
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> LocalCage | None:
-        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> LocalCage | None:  # fmt: skip
+        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None.
+
+        ``above`` is a polygon that its ``bound_above`` may be asked about.
+        """
         ...

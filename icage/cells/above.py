@@ -16,8 +16,8 @@ from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cells.free_space import Configuration, FreeSpace, Search, search
 from icage.cells.kernels.along import Way, way_through
 from icage.cells.kernels.columns import EDGE_FROM, PASS_SIGMA
-from icage.cells.minima import path_edges, way_to_a_pinch
 from icage.cells.kernels.facet import CLEARANCE
+from icage.cells.minima import path_edges, way_to_a_pinch
 from icage.geometry.exterior import Beside, pieces_beside
 from icage.outline import Outline
 

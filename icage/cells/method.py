@@ -73,10 +73,11 @@ class Cells:
         return cage_on(free_space, contacts, target, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> CellsLocalCage | None:
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> CellsLocalCage | None:  # fmt: skip
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        free_space = FreeSpace.around(polygon, hand)
+        free_space = FreeSpace.around(polygon, hand, above=above)
         wanted = contacts_as_configuration(free_space, contacts)
         target = find_target(free_space, wanted, reach=reach, turn=turn)
         if target is None or target.plateau is not None:

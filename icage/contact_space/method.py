@@ -153,9 +153,11 @@ class ContactSpace:
         return self._explored(plane, target).cage(contacts, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> ContactLocalCage | None:
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> ContactLocalCage | None:  # fmt: skip
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
+        del above  # ``bound_above`` has no use for it
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=reach, turn=turn)
         if target is None or target.slide:

@@ -46,7 +46,8 @@ class TrueCurve:
             The elements do not close: two parts of the object are exactly two radii apart, or
             nearly so, and rounding decides.
         """
-        ring = without_straight_vertices(outline.vertices, outline.diameter)
+        # kernels are compiled for arrays that may be written to
+        ring = np.array(without_straight_vertices(outline.vertices, outline.diameter))
         elements, closed = outer_ring(Edges.of(ring), radius, outline.diameter)
         found = cls(outline, radius, ring, elements, closed)
         found._check()

@@ -133,7 +133,7 @@ class Polygons:
             polygon, tangents = self._polygons(through)
             if polygon is None:
                 return None
-            local_cage = self._local_cage(polygon)
+            local_cage = self._local_cage(polygon, tangents)
             if local_cage is None:
                 if self.target is not None:
                     return None
@@ -222,14 +222,14 @@ class Polygons:
         """The cage on one polygon; its way out is not asked for, the bound from above has one."""
         return local_cage.cage(self.contacts, self.curve.outline, self.curve.radius, way=False)
 
-    def _local_cage(self, polygon: Outline) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline, above: Outline | None = None) -> LocalCage | None:
         """What is round the target, which rests on short chords or else anywhere on long ones."""
         chords = [0.0]
         if len(self.resting):
             radius = self.curve.radius
             chords = [2.0 * RESTING * radius, quadrant_chord(radius, self.segments)]
         for chord in chords:
-            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method)
+            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method, above)
             if found is not None:
                 return found
         return None

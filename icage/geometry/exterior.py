@@ -94,12 +94,18 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
 
 
 def exterior_pieces(
-    outline: Outline, hand: HandShape, *, merge: bool = True, apexes: bool = True
+    outline: Outline,
+    hand: HandShape,
+    *,
+    merge: bool = True,
+    apexes: bool = True,
+    above: Outline | None = None,
 ) -> tuple[Pieces, FloatArray]:
     """Convex pieces of the box minus the object, and the origin their coordinates are relative to.
 
     ``merge=False`` keeps the raw triangles, ``apexes=False`` the outline's own vertices even where
-    it is round: slower, and other formulations of the same space.
+    it is round: slower, and other formulations of the same space. Pieces that are merged are convex
+    for ``above``, too, where that has as many vertices, each a little further out or just there.
     """
     origin = outline.vertices[0].copy()
     ring = without_straight_vertices(outline.vertices - origin, outline.diameter)
@@ -112,12 +118,16 @@ def exterior_pieces(
     vertices = np.concatenate([box, ring])
     used, fans = np.arange(len(vertices)), list[list[int]]()
     if apexes:
-        coarse, above, fans = with_apexes(ring)
-        vertices = np.concatenate([vertices, above])
+        coarse, points, fans = with_apexes(ring)
+        vertices = np.concatenate([vertices, points])
         used = np.concatenate([used[:corner], corner + coarse])
     _, triangles = triangulate(shapely.Polygon(box, [vertices[used[corner:]]]))
     triangles = used[triangles]
-    rings = merge_convex(vertices, triangles) if merge else triangles.tolist()
+    also_at = None
+    if above is not None and len(above.vertices) == len(ring):
+        also_at = vertices.copy()
+        also_at[corner : corner + len(ring)] = above.vertices - origin
+    rings = merge_convex(vertices, triangles, also_at=also_at) if merge else triangles.tolist()
     rings += [[corner + v for v in triangle] for triangle in fans]
     return _as_pieces(vertices, rings, outline.diameter), origin
 
