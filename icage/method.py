@@ -13,8 +13,8 @@ from icage.hand import HandShape
 from icage.outline import Outline
 
 
-class LocalCage(Protocol):
-    """A strict minimum on one polygon, and the levels round it."""
+class UpperBound(Protocol):
+    """Levels around a target on an outer polygon, and a way out that shows the escape level."""
 
     @property
     def sigma_max(self) -> float:
@@ -26,12 +26,31 @@ class LocalCage(Protocol):
         """First level, [unit]; the escape level if no other minimum comes before it."""
         ...
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
-        """The cage on this polygon, of an outline and a radius that it stands for."""
-        ...
-
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements (k, 4) to a pinched hand and the least finger gap on them, or None."""
+        ...
+
+
+class LocalCage(UpperBound, Protocol):
+    """A strict minimum on one polygon, and the levels round it."""
+
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
+        """The cage on this polygon, of an outline and a radius that it stands for.
+
+        Without ``way`` it need not have an escape path.
+        """
+        ...
+
+    def bound_above(
+        self, polygon: Outline, contacts: FloatArray, first: float
+    ) -> UpperBound | None:
+        """What bounds the levels from above on a polygon with corners right above those of this.
+
+        ``contacts`` (3, 2) are those of the target between both polygons, ``first`` [unit] where
+        the first level should be, inf if the escape comes first. None if it takes a search to tell.
+        """
         ...
 
 
@@ -51,7 +70,11 @@ class Method(Protocol):
         ...
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> LocalCage | None:
-        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> LocalCage | None:  # fmt: skip
+        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None.
+
+        ``above`` is a polygon that its ``bound_above`` may be asked about.
+        """
         ...

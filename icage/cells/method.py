@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, not_a_cage
+from icage.cells.above import BoundAbove, bound_above
 from icage.cells.free_space import FreeSpace, Search, Tree, merge_tree, search
 from icage.cells.largest_sigma import largest_sigma_in
 from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
@@ -36,9 +37,18 @@ class CellsLocalCage:
         """First level."""
         return self.found.sigma_first()
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
         """The cage on this polygon."""
-        return cage_on(self.found.free_space, contacts, self.target, outline, radius, self.found)
+        space = self.found.free_space
+        return cage_on(space, contacts, self.target, outline, radius, self.found, way=way)
+
+    def bound_above(
+        self, polygon: Outline, contacts: FloatArray, first: float
+    ) -> BoundAbove | None:
+        """The way out of this polygon as one of a slightly larger one, or None."""
+        return bound_above(self.found, polygon, contacts, first)
 
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None."""
@@ -63,10 +73,11 @@ class Cells:
         return cage_on(free_space, contacts, target, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> CellsLocalCage | None:
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> CellsLocalCage | None:  # fmt: skip
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        free_space = FreeSpace.around(polygon, hand)
+        free_space = FreeSpace.around(polygon, hand, above=above)
         wanted = contacts_as_configuration(free_space, contacts)
         target = find_target(free_space, wanted, reach=reach, turn=turn)
         if target is None or target.plateau is not None:
@@ -87,10 +98,13 @@ def cage_on(
     outline: Outline,
     radius: float = 0.0,
     known: Search | None = None,
+    *,
+    way: bool = True,
 ) -> Cage:
     """The cage of a target on the polygon of a free space, whose fingers are points.
 
-    ``known`` is the search from the target, where it has been made already.
+    ``known`` is the search from the target, where it has been made already. Without ``way`` there
+    is no escape path.
     """
     hand = free_space.hand
     if target is None:
@@ -109,7 +123,7 @@ def cage_on(
         why = ISOLATED if largest is not None else no_depth_reason(top / target.sigma_0)
         return not_a_cage(outline, hand, contacts, why, radius)
     size = free_space.pieces.diameter
-    path, gap = escape_path(found, target) if found.escaped else (None, None)
+    path, gap = escape_path(found, target) if found.escaped and way else (None, None)
     first = punctures[0].sigma if punctures else None
     return Cage(
         outline=outline,

@@ -55,7 +55,9 @@ class ContactLocalCage:
         """First level."""
         return first_level(self.found)
 
-    def cage(self, contacts: FloatArray, outline: Outline, radius: float) -> Cage:
+    def cage(
+        self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
+    ) -> Cage:
         """The cage on this polygon."""
         found, sigma_0 = self.found, self.target.sigma_0
         hand = found.plane.hand
@@ -65,7 +67,7 @@ class ContactLocalCage:
             why = ISOLATED if largest is not None else no_depth_reason(top / sigma_0)
             return not_a_cage(outline, hand, contacts, why, radius)
         grasps, punctures = grasps_and_punctures(found, self.target)
-        path, gap = self.escape_path() or (None, None)
+        path, gap = (self.escape_path() if way else None) or (None, None)
         return Cage(
             outline=outline,
             hand=hand,
@@ -85,6 +87,9 @@ class ContactLocalCage:
             warnings=_cut_warnings(found),
             search=found.log(),
         )
+
+    def bound_above(self, polygon: Outline, contacts: FloatArray, first: float) -> None:
+        """Nothing: what the plane is split into changes with every corner."""
 
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None.
@@ -148,9 +153,11 @@ class ContactSpace:
         return self._explored(plane, target).cage(contacts, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
-    ) -> ContactLocalCage | None:
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
+        above: Outline | None = None,
+    ) -> ContactLocalCage | None:  # fmt: skip
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
+        del above  # ``bound_above`` has no use for it
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=reach, turn=turn)
         if target is None or target.slide:

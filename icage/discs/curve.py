@@ -46,7 +46,8 @@ class TrueCurve:
             The elements do not close: two parts of the object are exactly two radii apart, or
             nearly so, and rounding decides.
         """
-        ring = without_straight_vertices(outline.vertices, outline.diameter)
+        # kernels are compiled for arrays that may be written to
+        ring = np.array(without_straight_vertices(outline.vertices, outline.diameter))
         elements, closed = outer_ring(Edges.of(ring), radius, outline.diameter)
         found = cls(outline, radius, ring, elements, closed)
         found._check()
@@ -85,6 +86,23 @@ class TrueCurve:
         step = at[begin + 1] - at[begin]
         reach = self.radius / np.cos(0.5 * step)
         return self._ring(arc[begin], at[begin] + 0.5 * step, reach)
+
+    def outer_and_inner(
+        self, segments: int, through: FloatArray | None = None
+    ) -> tuple[Outline, Outline]:
+        """``outer``, and chords whose ends lie right beneath its corners, vertex for vertex.
+
+        On an arc that one of the points ``through`` is on, that point lies over the middle of a
+        short chord, as in ``inner``. Raises what ``outer`` raises.
+        """
+        arc, at = self._stops(segments, through, touched=True)
+        begin = np.flatnonzero(arc[1:] == arc[:-1])
+        half = 0.5 * (at[begin + 1] - at[begin])
+        middle = at[begin] + half
+        return (
+            self._ring(arc[begin], middle, self.radius / np.cos(half)),
+            self._ring(arc[begin], middle, np.full(len(begin), self.radius)),
+        )
 
     def sagitta(self, segments: int) -> float:
         """Most that the inner polygon may lie inside the curve, [unit]."""

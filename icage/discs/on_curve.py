@@ -28,7 +28,7 @@ from icage.errors import GeometryError
 from icage.geometry.statics import contacts_reason
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
-from icage.method import LocalCage, Method
+from icage.method import Method, UpperBound
 from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
@@ -43,7 +43,6 @@ def plan_discs(
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     try:
         curve = TrueCurve.of(outline, radius)
-        curve.inner(SEGMENTS[0])
     except GeometryError:
         check_disc_contacts(outline, radius, contacts)
         return plan_by_resolutions(outline, hand, contacts, radius, method)
@@ -51,8 +50,9 @@ def plan_discs(
     critical = CriticalHands(outline, radius, hand)
     target = _target(critical, contacts)
     true = contacts if target is None else target.contacts
+    resting = curve.on_arcs(true)
     for segments in SEGMENTS:
-        look = Polygons(curve, critical, method, contacts, true, target, segments)
+        look = Polygons(curve, critical, method, contacts, true, target, resting, segments)
         inner, bound = look.levels()
         if isinstance(inner, Cage):
             return inner
@@ -90,7 +90,7 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
         and near(levels.polygon_first, levels.sigma_first, wide)
     ):
         return None  # another puncture may be as near
-    outer = bound.local_cage
+    outer = bound.upper
     low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
     if low is None or solved is None:
         return None if np.isfinite(high) else _finished(look, inner, None, None)
@@ -105,7 +105,7 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
     return _finished(look, inner, max(high, solved), outer)
 
 
-def _finished(look: Polygons, inner: Solved, upper: float | None, outer: LocalCage | None) -> Cage:
+def _finished(look: Polygons, inner: Solved, upper: float | None, outer: UpperBound | None) -> Cage:
     cage, levels = inner.cage, inner.levels
     target = levels.grasps[0].contacts
     path, gap = cage.escape_path, cage.min_finger_gap
