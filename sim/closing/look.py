@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.world.hand_in_object import depth_at, fingers_seen
+from sim.closing.near_edges import NearEdges, depth_near
+from sim.world.hand_in_object import fingers_seen
 
 
 class EndingCode(IntEnum):
@@ -61,9 +62,12 @@ TAIL_FIELDS = 5
 
 
 class Shape(NamedTuple):
-    """The object's outline (n, 2) and the fingers of the hand, all in diameters."""
+    """The object's outline (n, 2) and the fingers of the hand, all in diameters; ``near`` is a grid
+    of its edges, filled as it goes.
+    """
 
     vertices: FloatArray
+    near: NearEdges
     radius: float
     directions: FloatArray
     lengths: FloatArray
@@ -130,6 +134,7 @@ def _fades(
 def _measure(
     i: int,
     vertices: FloatArray,
+    near: NearEdges,
     fingers: FloatArray,
     radius: float,
     apart: FloatArray,
@@ -145,7 +150,7 @@ def _measure(
         if room > 0.0 and u * u + v * v < room * room:
             depth[k] = -2.0 * TOUCHING
         else:
-            depth[k] = depth_at(vertices, x, y, radius)
+            depth[k] = depth_near(vertices, x, y, radius, near)
             apart[i, k, 0], apart[i, k, 1] = x, y
             apart[i, k, 2] = -depth[k] - 2.0 * TOUCHING
 
@@ -175,7 +180,7 @@ def look_at(
     off = 0.0
     for k in range(3):
         off = max(off, abs(qpos[k] - lengths[k] * sigma))
-    _measure(i, shape.vertices, fingers, shape.radius, record.apart, depth)
+    _measure(i, shape.vertices, shape.near, fingers, shape.radius, record.apart, depth)
     deepest = max(depth[0], depth[1], depth[2])
     touches = 0
     for k in range(3):

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from icage.arrays import FloatArray, IntArray
-from sim.closing import computed_step, look
+from sim.closing import computed_step, look, near_edges
 from sim.closing.computed_step import Plant, Room, goes_on
 from sim.closing.look import Bounds, Record, Shape, look_at
 from sim.world import hand_in_object
@@ -24,7 +24,7 @@ from sim.world import hand_in_object
 def _text() -> str:
     """A digest of the files that the loop calls."""
     digest = hashlib.sha256()
-    for module in (computed_step, look, hand_in_object):
+    for module in (computed_step, look, near_edges, hand_in_object):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()
 

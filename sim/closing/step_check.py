@@ -30,6 +30,7 @@ from sim.closing.look import SETTLED as SETTLED
 from sim.closing.look import TIMED_OUT as TIMED_OUT
 from sim.closing.look import TOUCHING as TOUCHING
 from sim.closing.look import EndingCode as EndingCode
+from sim.closing.near_edges import near_edges
 from sim.world.scene import Scene
 
 if TYPE_CHECKING:
@@ -68,9 +69,11 @@ class StepCheck:
     def __post_init__(self) -> None:
         # what the compiled loop reads and updates is the same at every look: gathered once
         scene, config, kinematics = self.scene, self.scene.config, self.scene.kinematics
+        vertices, radius = scene.object.vertices, scene.finger_radius / scene.object.diameter
         shape = Shape(
-            scene.object.vertices,
-            scene.finger_radius / scene.object.diameter,
+            vertices,
+            near_edges(vertices, radius, len(self.steps)),
+            radius,
             kinematics.directions,
             kinematics.lengths,
             kinematics.tendon_coefficients,

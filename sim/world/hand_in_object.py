@@ -49,6 +49,26 @@ def fingers_seen(
 
 
 @njit(cache=True)
+def edge_square(
+    ax: float, ay: float, bx: float, by: float, nearest: float
+) -> float:  # pragma: no cover - compiled
+    """Square of the distance of the origin from the edge from a to b; inf if above ``nearest``."""
+    ex, ey = bx - ax, by - ay
+    along = -(ax * ex + ay * ey)
+    square = ex * ex + ey * ey
+    if along <= 0.0:
+        distance = ax * ax + ay * ay
+    elif along >= square:
+        distance = bx * bx + by * by
+    else:
+        cross = ax * ey - ay * ex
+        distance = cross * cross
+        # most edges are farther than one met before: that needs no division
+        distance = math.inf if distance > _FARTHER * nearest * square else distance / square
+    return distance
+
+
+@njit(cache=True)
 def depth_at(
     vertices: FloatArray, x: float, y: float, radius: float
 ) -> float:  # pragma: no cover - compiled
@@ -63,19 +83,7 @@ def depth_at(
     ax, ay = vertices[count - 1, 0] - x, vertices[count - 1, 1] - y
     for j in range(count):
         bx, by = vertices[j, 0] - x, vertices[j, 1] - y
-        ex, ey = bx - ax, by - ay
-        along = -(ax * ex + ay * ey)
-        square = ex * ex + ey * ey
-        if along <= 0.0:
-            distance = ax * ax + ay * ay
-        elif along >= square:
-            distance = bx * bx + by * by
-        else:
-            cross = ax * ey - ay * ex
-            distance = cross * cross
-            # most edges are farther than one met before: that needs no division
-            distance = math.inf if distance > _FARTHER * nearest * square else distance / square
-        nearest = min(nearest, distance)
+        nearest = min(nearest, edge_square(ax, ay, bx, by, nearest))
         if (ay > 0.0) != (by > 0.0) and ((ax * by - ay * bx > 0.0) == (by > ay)):
             inside = not inside
         ax, ay = bx, by

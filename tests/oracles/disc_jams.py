@@ -195,10 +195,12 @@ def _all_met(
                 fb, fc = fb[on], fc[on]
                 q_b, q_c = _foot(curve, e, fb), _foot(curve, g, fc)
                 good = np.isfinite(q_b) & np.isfinite(q_c)
-                good[good] = curve.on(fb[good]) & curve.on(fc[good])
-                met.append((on[good], fb[good], fc[good], q_b[good], q_c[good]))
+                if good.any():
+                    met.append((on[good], fb[good], fc[good], q_b[good], q_c[good]))
     on, fb, fc, q_b, q_c = (np.concatenate(columns) for columns in zip(*met, strict=True))
-    return on, fb, fc, q_b, q_c
+    good = curve.on(fb)  # asked of all at once
+    good[good] = curve.on(fc[good])
+    return on[good], fb[good], fc[good], q_b[good], q_c[good]
 
 
 def _three_squeeze(

@@ -109,9 +109,9 @@ def furthest_off(cage: Cage, best: BestPlacement, rows: FloatArray) -> float:
 def clearances(cage: Cage, rows: FloatArray) -> FloatArray:
     """(n,) least distance of the fingers from the object; negative inside."""
     points = shapely.points(cage.hand.fingers(rows))
-    away = shapely.distance(points, cage.outline.polygon)
+    away = shapely.distance(points, cage.outline.polygon.exterior)
     inside = shapely.contains_properly(cage.outline.polygon, points)
-    away = np.where(inside, -shapely.distance(points, cage.outline.polygon.exterior), away)
+    away = np.where(inside, -away, away)
     return away.min(axis=1) - cage.finger_radius
 
 
@@ -151,7 +151,9 @@ def _values(cage: Cage, rows: FloatArray, level: float | None, errs: bool) -> Fl
             shapely.MultiPoint(np.column_stack([cage.hand.z.real, cage.hand.z.imag]))
         )
         values = np.minimum(values, around * (level - rows[:, 3]))
-    return np.where(in_set(cage, rows, level) & (values > 0.0), values, -np.inf)
+    good = values > 0.0  # the others need not be asked about
+    good[good] = in_set(cage, rows[good], level)
+    return np.where(good, values, -np.inf)
 
 
 def _resized(cage: Cage, rows: FloatArray, size: float) -> FloatArray:
