@@ -21,7 +21,14 @@ from icage.cells.kernels.facet import (
     rows_of_others,
     segment_of,
 )
-from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, min_norm, min_norm_careful
+from icage.cells.kernels.min_norm import (
+    FOUND,
+    INFEASIBLE,
+    UNSURE,
+    _most_violated,
+    min_norm,
+    min_norm_careful,
+)
 from icage.cells.kernels.near import Hand, cells_near
 from icage.cells.kernels.passes import new_room, pass_fast, pass_value
 from tests.icage.cells.setting import Setting
@@ -64,6 +71,92 @@ def test_the_least_norm_in_half_planes(count: int) -> None:
     assert kinds[FOUND] >= 5
     assert count < 3 or kinds[INFEASIBLE] > 0
     assert min_norm(rows, 0, 1e-12) == (FOUND, 0.0, 0.0)
+
+
+def of_points(
+    rng: np.random.Generator, rows: list[Floats], c: list[float], rounding: Floats, error: Floats
+) -> Floats:
+    """Rows of half planes in any order."""
+    table = np.column_stack([np.array(rows), c, error, rounding])
+    return table[rng.permutation(len(table))]
+
+
+@pytest.mark.parametrize("size", [1.0, 40.0, 1e-3])
+def test_the_least_norm_is_as_good_as_the_rounding_that_it_is_told(size: float) -> None:
+    """Forty rows that hold a point, some through it; c may be off by ``rounding``, either way.
+
+    ``FOUND`` is within ``worst`` of the least norm whatever c is, and where nothing is thin it is
+    not ``UNSURE``. What may be given besides counts for no value.
+    """
+    rng = np.random.default_rng(7)
+    kinds = {INFEASIBLE: 0, FOUND: 0, UNSURE: 0}
+    worst, vertices = 1e-6 * size, 0
+    for trial in range(60):
+        point = size * rng.normal(size=2)
+        angle = np.angle(point @ [1.0, 1j]) + rng.uniform(-1.4, 1.4, 40)
+        g = np.column_stack([np.cos(angle), np.sin(angle)])
+        free = size * rng.exponential(size=40)
+        free[:5] = 0.0
+        c = g @ point - free
+        rounding = 10.0 ** rng.uniform(-9.0, -6.5 if trial % 2 else -5.5, 40) * size
+        error = rounding + 1e-3 * size
+        found = min_norm(of_points(rng, list(g), list(c), rounding, error), 40, worst)
+        kinds[found.status] += 1
+        if found.status != FOUND:
+            continue
+        off = [rounding, -rounding, rounding * rng.choice([-1.0, 1.0], 40)]
+        norms = [least_norm(g, c + o, 1e-12 * size) for o in off]
+        value = float(np.hypot(found.w_x, found.w_y))
+        assert max(abs(v - value) for v in norms) <= 1.001 * worst
+        vertices += abs(value - c.max()) > worst
+    assert kinds[FOUND] >= 25
+    assert kinds[UNSURE] >= 5
+    assert kinds[INFEASIBLE] == 0
+    assert vertices > 5
+
+
+@pytest.mark.parametrize("size", [1.0, 40.0, 1e-3])
+def test_no_point_is_said_where_there_is_none_with_all_that_is_given(size: float) -> None:
+    """Rows that exclude each other by a part of their errors, or by many times of them."""
+    rng = np.random.default_rng(8)
+    said = {0.5: 0, 50.0: 0}
+    for trial in range(120):
+        factor = (0.5, 50.0)[trial % 2]
+        opposite = trial % 4 < 2
+        turn = rng.uniform(0.0, 2.0 * np.pi)
+        apart = [0.0, np.pi] if opposite else [0.0, rng.uniform(1.7, 2.6), rng.uniform(3.7, 4.5)]
+        g = np.array([[np.cos(turn + a), np.sin(turn + a)] for a in apart])
+        error = 10.0 ** rng.uniform(-6.0, -5.0, len(g)) * size
+        weight = nnls(np.vstack([g.T, np.ones(len(g))]), np.array([0.0, 0.0, 1.0]))[0]
+        c = g @ (size * rng.normal(size=2))
+        c += factor * (weight @ error) / weight.sum()  # sum of weight * g is 0: sum of c decides
+        table = of_points(rng, list(g), list(c), 1e-3 * error, error)
+        found = min_norm(table, len(table), 1e-4 * size)
+        given = least_norm(g, c - error, 1e-12 * size)
+        assert (given < np.inf) == (factor < 1.0)
+        if factor < 1.0:
+            assert found.status != INFEASIBLE
+        assert found.status != FOUND
+        said[factor] += found.status == INFEASIBLE
+    assert said[50.0] == 60
+
+
+def test_the_row_that_is_violated_most() -> None:
+    rng = np.random.default_rng(9)
+    none = 0
+    for _ in range(60):
+        angle = rng.uniform(0.0, 2.0 * np.pi, 6)
+        rounding = rng.exponential(0.3, 6)
+        rows = np.column_stack([np.cos(angle), np.sin(angle), rng.normal(size=6) - 0.7,
+                                np.full(6, 9.0), rounding])  # fmt: skip
+        w = rng.normal(size=2)
+        over = rows[:5, 2] - rows[:5, :2] @ w - rounding[:5]
+        known = int(np.argmax(over)) if over.max() > 0.0 else -1
+        assert _most_violated(rows, 5, *w) == known
+        none += known < 0
+    assert 5 < none < 55
+    # violated by as much as rounding may be: not violated
+    assert _most_violated(np.array([[1.0, 0.0, 0.5, 0.0, 0.25]]), 1, 0.25, 9.0) == -1
 
 
 def test_what_doubles_cannot_tell_is_said() -> None:
