@@ -25,6 +25,7 @@ from icage.cells.kernels.min_norm import (
     FOUND,
     INFEASIBLE,
     UNSURE,
+    _certified,
     _most_violated,
     min_norm,
     min_norm_careful,
@@ -126,7 +127,7 @@ def test_no_point_is_said_where_there_is_none_with_all_that_is_given(size: float
         turn = rng.uniform(0.0, 2.0 * np.pi)
         apart = [0.0, np.pi] if opposite else [0.0, rng.uniform(1.7, 2.6), rng.uniform(3.7, 4.5)]
         g = np.array([[np.cos(turn + a), np.sin(turn + a)] for a in apart])
-        error = 10.0 ** rng.uniform(-6.0, -5.0, len(g)) * size
+        error = 10.0 ** rng.uniform(-7.0, -5.0, len(g)) * size
         weight = nnls(np.vstack([g.T, np.ones(len(g))]), np.array([0.0, 0.0, 1.0]))[0]
         c = g @ (size * rng.normal(size=2))
         c += factor * (weight @ error) / weight.sum()  # sum of weight * g is 0: sum of c decides
@@ -139,6 +140,100 @@ def test_no_point_is_said_where_there_is_none_with_all_that_is_given(size: float
         assert found.status != FOUND
         said[factor] += found.status == INFEASIBLE
     assert said[50.0] == 60
+
+
+def test_three_rows_exclude_each_other_beyond_four_times_their_doubt() -> None:
+    """On the line of the last row the other two leave less than nothing, by so much."""
+    rng = np.random.default_rng(10)
+    told = {INFEASIBLE: 0, UNSURE: 0}
+    for _ in range(300):
+        turn = rng.uniform(0.0, 2.0 * np.pi)
+        angle = turn + np.array([0.0, rng.uniform(1.2, 2.9), rng.uniform(3.4, 5.0)])
+        g = np.column_stack([np.cos(angle), np.sin(angle)])
+        weight = nnls(np.vstack([g.T, np.ones(3)]), np.array([0.0, 0.0, 1.0]))[0]
+        error = 10.0 ** rng.uniform(-4.0, -2.0, 3)
+        c = g @ rng.normal(size=2) + rng.uniform(3.0, 9.0) * weight @ error
+        if weight.min() < 0.02 or c.max() <= 0.0:
+            continue
+        # the furthest, the one its foot violates most, and what is left at their corner
+        first = int(np.argmax(c))
+        second = int(np.argmax(c - g @ (c[first] * g[first])))
+        if second == first or g[first] @ (c[second] * g[second]) >= c[first]:
+            continue
+        last = 3 - first - second
+        corners = [np.linalg.solve(g[[q, last]], c[[q, last]]) for q in (first, second)]
+        apart = float(np.hypot(*(corners[0] - corners[1])))
+        doubt = sum((error[q] + error[last]) / abs(np.sin(angle[q] - angle[last]))
+                    for q in (first, second))  # fmt: skip
+        if abs(apart / doubt - 4.0) < 0.01:
+            continue
+        table = np.column_stack([g, c, error, 1e-12 * error])
+        status = min_norm(table, 3, 1.0).status
+        assert status == (INFEASIBLE if apart > 4.0 * doubt else UNSURE)
+        told[status] += 1
+    assert min(told.values()) > 15
+
+
+def test_parallel_rows_exclude_each_other_beyond_the_rounding_of_their_distance() -> None:
+    def asked(c: float, apart: float) -> int:
+        rows = np.array([[0.0, 1.0, c, 0.0, 0.0], [0.0, -1.0, apart - c, 0.0, 0.0]])
+        return int(min_norm(rows, 2, 1.0).status)
+
+    assert asked(1024.0, 5e-10) == UNSURE
+    assert asked(1024.0, 4e-9) == INFEASIBLE
+    assert asked(2.0**-10, 1e-13) == INFEASIBLE
+
+
+def vouched(rows: Floats, w: Floats, tight: list[int], worst: float) -> tuple[bool, float]:
+    """Whether a least point is good to ``worst`` by the rule, and how near that is, as a factor.
+
+    Tight rows move it sideways by ``shift``; whatever is then near enough to be tight must leave a
+    wedge in which a step makes up for the largest rounding.
+    """
+    angle, rounding = np.angle(rows[:, :2] @ [1.0, 1j]), rows[:, 4]
+    shift, factors = rounding[tight[0]], []
+    if len(tight) == 2:
+        shift = rounding[tight].sum() / abs(np.sin(angle[tight[0]] - angle[tight[1]]))
+    factors.append(10.0 * worst / shift)
+    gap, most = rows[:, :2] @ w - rows[:, 2], 4.0 * (rounding + shift)
+    near = gap < most
+    factors += list(np.abs(gap / most))
+    turn = np.angle(np.exp(1j * (angle[near] - np.angle(w @ [1.0, 1j]))))
+    room = np.pi - (max(0.0, turn.max()) - min(0.0, turn.min()))
+    if room > 0.0:
+        factors.append(worst * np.sin(min(0.5 * room, 1.5)) / rounding[near].max())
+        factors.append(room / 1e-3)
+    good = 10.0 * worst >= shift and (gap >= -most).all() and room >= 1e-3
+    good = good and rounding[near].max() <= worst * np.sin(min(0.5 * room, 1.5))
+    return bool(good), float(np.abs(np.log(np.maximum(factors, 1e-300))).min())
+
+
+def test_a_least_point_is_vouched_for_by_its_wedge() -> None:
+    rng = np.random.default_rng(11)
+    told = [0, 0]
+    for trial in range(1200):
+        two = trial % 4 > 0
+        ahead = rng.uniform(0.0, 2.0 * np.pi)
+        w = rng.choice([0.03, 1.0, 30.0]) * np.array([np.cos(ahead), np.sin(ahead)])
+        off = [rng.uniform(0.05, 1.55), -rng.uniform(0.05, 1.55)] if two else [0.0]
+        if trial % 8 == 5:  # hardly a wedge
+            off = [rng.uniform(1.55, 0.5 * np.pi), -0.5 * np.pi + 10.0 ** rng.uniform(-4.0, -2.0)]
+        off = [*off, *rng.uniform(-3.0, 3.0, 3)]
+        g = np.column_stack([np.cos(ahead + np.array(off)), np.sin(ahead + np.array(off))])
+        rounding = 10.0 ** rng.uniform(-6.0, -4.0, len(g))
+        c = g @ w
+        c[1 + two :] -= rng.choice([-1e-4, 0.0, 1e-5, 1e-4, 0.3], 3) * rng.exponential(size=3)
+        rows = np.column_stack([g, c, np.full(len(g), 9.0), rounding])
+        tight = [1, 0] if two else [0]
+        worst = 10.0 ** rng.uniform(-6.0, -3.0)
+        good, close = vouched(rows, w, tight, worst)
+        if close < 0.01:
+            continue
+        found = _certified(rows, len(g), worst, *w, tight[0], tight[1] if two else -1)
+        assert found == (FOUND if good else UNSURE)
+        told[good] += 1
+    assert min(told) > 150
+    assert _certified(np.zeros((0, 5)), 0, 1.0, 0.0, 0.0, -1, -1) == FOUND
 
 
 def test_the_row_that_is_violated_most() -> None:
