@@ -260,7 +260,9 @@ def test_what_doubles_cannot_tell_is_said() -> None:
 
     def asked(*rows: tuple[float, float, float], worst: float = 1e-12, off: float = error) -> int:
         table = np.array([(*r, off, off) for r in rows])
-        return min_norm(table, len(table), worst).status
+        found = min_norm(table, len(table), worst)
+        assert found.status != INFEASIBLE or found[1:] == (0.0, 0.0)
+        return found.status
 
     up, down = (0.0, 1.0), (0.0, -1.0)
     assert asked((*up, 0.5), (*down, -0.6)) == FOUND
