@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, ParamSpec, TypeVar
+from typing import Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 import shapely
@@ -21,6 +21,7 @@ from experiments.io.arrow_table import Table
 from experiments.io.own_files import own_json
 from experiments.io.parquet_files import read_table, rows_and_words, words_of
 from experiments.io.versions import versions
+from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
 from icage.checks import a_number
@@ -245,17 +246,24 @@ def recorded_regions(trial: RecordedTrial) -> tuple[FingerRegion, ...]:
     )
 
 
-def _grasp(grasp: dict[str, Any], sigma_0: float) -> GraspMinimum:
+def _grasp(grasp: Any, sigma_0: float) -> GraspMinimum:
+    if not isinstance(grasp, dict):
+        raise TypeError(f"a grasp is {type(grasp).__name__}")
+    grasp = cast("dict[str, Any]", grasp)
     ends = grasp.get("plateau")
     return GraspMinimum(
         id=grasp["id"],
         target=grasp["target"],
         sigma=grasp["sigma_0"],
-        contacts=points(grasp["contacts"], "contacts", least=3, most=3),
-        plateau=None if ends is None else (np.array(ends[0]), np.array(ends[1])),
+        contacts=_contacts(grasp["contacts"]),
+        plateau=None if ends is None else (_contacts(ends[0]), _contacts(ends[1])),
         free_fingers=tuple(grasp["free_fingers"]),
         joined_at=sigma_0,
     )
+
+
+def _contacts(rows: Any) -> FloatArray:
+    return points(rows, "contacts", least=3, most=3)
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -10,6 +10,7 @@ listed in ``equivalent.json``, each with its reason.
     python -m tests.mutants --reached [TEST ...]    only the first, into out/mutants/reached.json
     python -m tests.mutants --most 200 --seed 27    so many mutants of kernels, a third of it others
     python -m tests.mutants --survivors             those that survived last time, once more
+    python -m tests.mutants --file icage/cells/kernels/boxes.py --most 999 --results out/boxes.json
 """
 
 from __future__ import annotations
@@ -178,6 +179,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=14)
     parser.add_argument("--seconds", type=float, default=ALL, help="of tests for a survivor")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--file", action="append", help="draw from this file only; may be repeated")
     parser.add_argument("tests", nargs="*", help="with --reached: noted anew are only these")
     parser.add_argument("--reached", action="store_true", help="only which tests reach what")
     parser.add_argument("--survivors", action="store_true", help="those of last time once more")
@@ -208,9 +210,9 @@ def main() -> int:
         options.seed = old["seed"]
     else:
         random = Random(options.seed)
-        drawn = random.sample(everything["kernels"], options.most)
         around = options.most // 3 if options.around is None else options.around
-        drawn += random.sample(everything["around"], around)
+        drawn = _draw(random, everything["kernels"], options.most, options.file)
+        drawn += _draw(random, everything["around"], around, options.file)
         left = [one for one in drawn if one.name not in equal]
     pytest.main([*QUIET, *TESTED, "--collect-only", "-qq"])  # loads all of the tests
     for most in (FIRST, options.seconds):
@@ -228,6 +230,14 @@ def _watch(out: Path, tests: Iterable[str]) -> None:
     from tests.mutants.reached import Reached  # only now: coverage is asked for here alone
 
     pytest.main([*QUIET, *tests], plugins=[Reached(out)])
+
+
+def _draw(
+    random: Random, everything: list[Mutant], most: int, files: list[str] | None
+) -> list[Mutant]:
+    """So many of them, of some files alone if these are named; all where there are no more."""
+    own = [one for one in everything if files is None or one.file in files]
+    return random.sample(own, min(most, len(own)))
 
 
 def _row(

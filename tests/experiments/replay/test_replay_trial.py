@@ -135,6 +135,20 @@ def test_a_plan_that_nothing_can_be_closed_with_is_an_input_error(
     assert words in here(capsys, "replay-trial", str(other), "0").error_line()
 
 
+def test_a_grasp_or_a_plateau_that_is_none_is_an_input_error(
+    folder: Path, tmp_path: Path, capsys: Any
+) -> None:
+    runs = json.loads((folder / "replay.json").read_text())["runs"]
+    whole = runs[0]["plan"]["grasps"][0]
+    grasps = ([], [1], "grasp", 7, None, {})
+    plateaus = ([], {}, 7, [1, 2], [[[0, 0]], [[0, 0]]], "ends")
+    for k, wrong in enumerate((*grasps, *(whole | {"plateau": ends} for ends in plateaus))):
+        runs[0]["plan"]["grasps"] = [wrong]
+        other = copied(folder, tmp_path / str(k), runs=runs)
+        told = here(capsys, "replay-trial", str(other), "0").error_line()
+        assert "is not a replay" in told or "contacts" in told, wrong
+
+
 @pytest.mark.slow
 def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video, "find_backend", lambda: None)

@@ -162,6 +162,8 @@ def test_all_cells_of_a_small_object() -> None:
     least = least_passes(len(cells), passes.lower, passes.upper, passes.sigma)
     some = whole_least_points(s.pieces, s.z, cells, least, 5, 30, *args)
     assert some.sigma == pytest.approx(born[born < np.inf][5:30], abs=1e-9)
+    assert (some.slot[some.finger < 0] == -1).all()
+    assert (some.finger < 0).any()
     for k in range(25):
         if some.finger[k] >= 0:
             facet = facet_of(s.pieces, cells[5 + k], some.finger[k], some.slot[k])

@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 from icage.cells.free_space import search
+from icage.cells.kernels import sandwich as sandwich_module
 from icage.cells.kernels.convex_polygon import (
     Line,
     area,
@@ -353,6 +354,29 @@ def test_a_sandwich_holds_what_it_says(seed: int) -> None:
     assert -1e-12 * s.size**2 <= gap <= 1.01 * enough
     if h >= 3:
         assert around.contains(shapely.Polygon(corners))
+
+
+@pytest.mark.parametrize("room", [14, 24])
+def test_a_sandwich_has_no_more_corners_than_there_is_room_for(
+    room: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However little is asked for between its polygons: they are as good as room lets them be."""
+    monkeypatch.setattr(sandwich_module, "CORNERS", room)
+    most = 0
+    for seed in range(8):
+        s = Setting(seed)
+        cell, start, level = cell_and_start(s)
+        inner, outer = np.full((2, room), np.nan), np.full((2, room), np.nan)
+        h, m = sandwich(s.pieces, s.z, 1, cell, level, start, 1e-14 * s.size**2, inner, outer)
+        most = max(most, h, m)
+        assert max(h, m) <= room
+        if m < 3:
+            continue
+        assert (least_openings(s, cell, 1, inner[:, :h].T) <= level * (1.0 + 1e-7)).all()
+        if h >= 3:
+            around = shapely.Polygon(outer[:, :m].T).buffer(1e-8 * s.size)
+            assert around.contains(shapely.Polygon(inner[:, :h].T))
+    assert most >= room - 8
 
 
 def test_sandwiches_that_an_earlier_one_covers_are_left_out() -> None:

@@ -24,7 +24,7 @@ from icage.cells.kernels.facet import (
 from icage.cells.kernels.near import cells_near
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.region import least_points
-from icage.cells.kernels.search import birth, explore
+from icage.cells.kernels.search import _least_on_walls, birth, explore
 from icage.cells.kernels.tree import births, find_at, merge, visited_births
 from icage.cells.kernels.whole import (
     ends_of_minima,
@@ -63,6 +63,13 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
         told[int(born.sigma < np.inf)] += 1
         if born.sigma == np.inf or cell[0] == cell[1] == cell[2]:
             assert born[1:] == (0.0, 0.0, -1, -1)
+        walls = [
+            v for (i, slot), v in values.items() if i < 2 and s.pieces.slot_neighbour[slot] < 0
+        ]
+        held = 0.0 if cell[0] == cell[1] == cell[2] else min(walls, default=np.inf)
+        for least in (0.3 * s.space.cap, s.space.cap):
+            found = _least_on_walls(s.pieces, s.z, cell, least, s.space.worst, room)
+            assert found == pytest.approx(min(held, least), abs=1e-9)
         if 0.0 < born.sigma < np.inf:
             assert born.finger in (0, 1)
             assert values[born.finger, born.slot] == pytest.approx(known, abs=1e-9)

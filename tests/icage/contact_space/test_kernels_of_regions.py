@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
+from icage.contact_space.exploration import Plane
 from icage.contact_space.kernels.columns import (
     ABOVE,
     BELOW,
@@ -18,6 +19,7 @@ from icage.contact_space.kernels.columns import (
     TUNNEL_BELOW,
     TUNNEL_KEPT,
 )
+from icage.contact_space.kernels.explore import region_key
 from icage.contact_space.kernels.rectangle import (
     FIRST_SLOT,
     MOST_CORNERS,
@@ -44,6 +46,9 @@ from icage.contact_space.kernels.shooting import (
     touches,
 )
 from icage.contact_space.kernels.tunnels import all_tunnels, holds, lower_beside, rectangle_minima
+from icage.contact_space.kernels.whole import all_regions, hands_at
+from icage.hand import HandShape
+from icage.outline import Outline
 from tests.icage.contact_space.test_equations import setting
 from tests.oracles.geometry import Floats
 
@@ -405,3 +410,32 @@ def test_the_height_of_the_third_finger_is_linear() -> None:
         for a, b in s.rng.random((3, 2)):
             x, y = third_finger(s.space, i, j, k, a, b)
             assert h0 + hs * a + hu * b == pytest.approx(nx * (x - x0) + ny * (y - y0), abs=1e-9)
+
+
+def test_every_region_of_a_small_object_has_its_least_node() -> None:
+    """Of each region that holds a hand one row, found by its key, and a hand of least sigma."""
+    corners = np.array([[0.0, 0.0], [2.0, 0.2], [0.7, 1.5]])
+    contacts = np.array([[1.0, 0.1], [1.3, 0.88], [0.35, 0.75]])
+    space = Plane.around(Outline(corners), HandShape.from_contacts(contacts)).space
+    regions, nodes, known = all_regions(space)
+    row, out, spare = 0, np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
+    n, m = len(space.edge_x), len(space.ptr) - 1
+    for at in itertools.product(range(3), range(n), range(n), range(m)):
+        count = region_corners(space, *at, out, spare)
+        key = region_key(space, *at)
+        assert (key in known) == (count > 0)
+        if count == 0:
+            continue
+        assert known[key] == row
+        assert regions[row].tolist() == list(at)
+        sigma, s, u = nodes[row]
+        least = least_of_region(space, *at[:3], out, count)
+        assert sigma == least.sigma
+        assert scale_at(space, *at[:3], s, u) == pytest.approx(sigma, abs=2 * space.flat)
+        # on a valley in its middle
+        middle = [0.5 * (least.s + least.s_too), 0.5 * (least.u + least.u_too)]
+        assert [s, u] == pytest.approx(middle)
+        row += 1
+    assert len(regions) == len(nodes) == len(known) == row > 20
+    hands = hands_at(space, regions, nodes)
+    assert np.hypot(*hands[:, 2:].T) == pytest.approx(nodes[:, 0], abs=2 * space.flat)

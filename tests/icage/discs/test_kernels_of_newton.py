@@ -15,7 +15,7 @@ from icage.discs.kernels.features import (
     nearly_balanced,
     put_gaps,
 )
-from icage.discs.kernels.forces import least_squares, pushing_of
+from icage.discs.kernels.forces import _without_pulling, least_squares, pushing_of
 from icage.discs.kernels.newton import Ended, _half_planes, _solved, descend, newton
 from icage.hand import HandShape
 from icage.outline import Outline
@@ -95,6 +95,57 @@ def test_forces_that_push_are_scipys_in_any_number() -> None:
     found = pushing_of(close, np.array([1.0, 0.0]))
     assert found.miss == pytest.approx(0.0, abs=1e-8)
     assert found.force.sum() == pytest.approx(1.0)
+
+
+def left_pressing(columns: Floats, wanted: Floats, pressing: list[int], force: Floats) -> list[int]:
+    """Who still presses, by the rule: straight to the best, whoever would pull first leaves."""
+    force = force.copy()
+    while pressing:
+        best = np.linalg.lstsq(columns[:, pressing], wanted, rcond=None)[0]
+        if best.min() > 0.0:
+            break
+        share = {
+            j: force[j] / (force[j] - b) for j, b in zip(pressing, best, strict=True) if b <= 0
+        }
+        way = min(share.values())
+        force[pressing] += way * (best - force[pressing])
+        pressing = [j for j in pressing if share.get(j, 1.0) > way]
+    return pressing
+
+
+def test_from_forces_that_press_those_that_would_pull_first_are_left_out() -> None:
+    rng = np.random.default_rng(4)
+    rounds = {0: 0, 1: 0, 2: 0, 3: 0}
+    for _ in range(150):
+        count = int(rng.integers(1, 6))
+        columns, wanted = rng.normal(size=(6, count + 1)), rng.normal(size=6)
+        which = rng.permutation(count + 1)[:count]
+        start = np.zeros(count + 1)
+        start[which] = rng.exponential(size=count)
+        force, pressing, presses = start.copy(), which.copy(), start > 0.0
+        best = np.full(count, np.nan)
+        now = _without_pulling(columns, wanted, pressing, count, presses, force, best)
+        known = left_pressing(columns, wanted, which.tolist(), start)
+        rounds[min(3, count - len(known))] += 1
+        assert pressing[:now].tolist() == known
+        assert np.flatnonzero(presses).tolist() == sorted(known)
+        own = np.zeros(count + 1)
+        if known:
+            own[known] = np.linalg.lstsq(columns[:, known], wanted, rcond=None)[0]
+        assert force == pytest.approx(own)
+        assert force.min() >= 0.0
+        miss = [np.linalg.norm(columns @ f - wanted) for f in (start, force)]
+        assert miss[1] <= miss[0] + 1e-12
+    assert min(rounds.values()) > 5
+    # a force of nothing does not press, exactly; and nobody may be left
+    force, pressing, presses = np.ones(2), np.arange(2), np.ones(2, np.bool_)
+    args = (pressing, 2, presses, force, np.empty(2))
+    assert _without_pulling(np.eye(2), np.array([3.0, 0.0]), *args) == 1
+    assert (force.tolist(), presses.tolist()) == ([3.0, 0.0], [True, False])
+    force, presses = np.zeros(2), np.array([False, True])
+    args = (np.array([1, 0]), 1, presses, force, np.empty(2))
+    assert _without_pulling(np.eye(2), np.array([3.0, -1.0]), *args) == 0
+    assert not presses.any()
 
 
 class Setting:

@@ -59,7 +59,8 @@ def test_a_sector_holds_the_hands_that_forces_balance(half: float) -> None:
         which = 2 + rng.permutation(count)
         used = store[which]
         sector = np.full(2, np.nan)
-        kind = balancing(Z, finger, store, which, count, sector)
+        z = Z + (trial % 2) * np.array([0.7, -0.4])  # wherever the unit hand has its origin
+        kind = balancing(z, finger, store, which, count, sector)
         kinds[kind] += 1
         asked = rng.uniform(-np.pi, np.pi, 6)
         if kind == SECTOR:
@@ -67,11 +68,11 @@ def test_a_sector_holds_the_hands_that_forces_balance(half: float) -> None:
             assert 0.0 <= spread <= 0.5 * np.pi
             edges = middle + (spread - 1e-6) * np.array([1.0, -1.0]) if spread > 1e-5 else [middle]
             for angle in edges:
-                assert balances(Z[finger], used, complex(np.exp(1j * angle))) or half < 1e-6
+                assert balances(z[finger], used, complex(np.exp(1j * angle))) or half < 1e-6
             beyond = middle + (spread + 1e-5) * np.array([1.0, -1.0])
             if spread < 0.5 * np.pi:
                 for angle in beyond:
-                    assert not balances(Z[finger], used, complex(np.exp(1j * angle)))
+                    assert not balances(z[finger], used, complex(np.exp(1j * angle)))
         for angle in asked:
             inside = {NOTHING: False, EVERYTHING: True}.get(kind)
             if inside is None:
@@ -79,7 +80,7 @@ def test_a_sector_holds_the_hands_that_forces_balance(half: float) -> None:
                 if abs(off) < 1e-4:
                     continue
                 inside = off < 0.0
-            assert balances(Z[finger], used, complex(np.exp(1j * angle))) == inside
+            assert balances(z[finger], used, complex(np.exp(1j * angle))) == inside
     assert kinds[SECTOR] >= 5
     assert kinds[NOTHING] >= 5
     assert kinds[EVERYTHING] >= (1 if half > 0.4 else 0)

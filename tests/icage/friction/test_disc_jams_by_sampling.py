@@ -351,7 +351,9 @@ def test_features_that_fit_a_size() -> None:
 
     def fits(least: float, most: float, thick: float = 1e-6) -> bool:
         one, other = (
-            _sizes_fit(Z, finger, np.array(pair), 2, which, turned, least, most, thick, place)
+            _sizes_fit(
+                Z + [0.7, -0.4], finger, np.array(pair), 2, which, turned, least, most, thick, place
+            )
             for pair, turned in (([0, 1], state), ([1, 0], state[[1, 0, 2]]))
         )
         assert one == other

@@ -54,7 +54,7 @@ def test_features_that_fit_a_size() -> None:
     def fits(least: float, most: float, *chosen: int, thick: float = 0.0) -> bool:
         which, finger = contacts_of(sides, cones), np.array([0, 1])
         one, other = (
-            bool(_sizes_fit(Z, finger, np.array(pair), 2, which, least, most, thick))
+            bool(_sizes_fit(Z + [0.7, -0.4], finger, np.array(pair), 2, which, least, most, thick))
             for pair in (chosen, chosen[::-1])
         )
         assert one == other
