@@ -131,8 +131,8 @@ def test_regions_of_slivers_keep_the_third_finger_in_them(angle: float, spin: fl
         for i, j, k in np.ndindex(3, space.edges, space.edges):
             region = np.array([i, j, k, c])
             for s, u in plane.corners(region):
-                third = plane.fingers(plane.hand_at(region, s, u))[(i + 2) % 3]
-                off = shapes[c].distance(shapely.Point(third.real, third.imag))
+                third = plane.fingers(plane.hand_at(region, float(s), float(u)))[(i + 2) % 3]
+                off = shapes[c].distance(shapely.Point(float(third.real), float(third.imag)))
                 assert off <= 25.0 * space.clip
                 looked_at += 1
     assert looked_at

@@ -16,7 +16,7 @@ import numpy as np
 from icage.kernels.compiled import compiled
 
 MOST_CORNERS = 48
-"""Room for the corners of a region: 4 + one or two for every edge of a piece and both sharp tips."""
+"""Room for the corners of a region: 4 + one or two for every edge of a piece and its sharp tips."""
 
 S_LOW, U_LOW, S_HIGH, U_HIGH, FIRST_SLOT = 0, 1, 2, 3, 4
 """Labels of a region's boundary: a finger at the start or end of its edge, then the slots."""
