@@ -31,6 +31,15 @@ class UpperBound(Protocol):
         ...
 
 
+class BoundAbove(UpperBound, Protocol):
+    """What bounds the levels on a polygon that is a little larger than one that was searched."""
+
+    @property
+    def first_contacts(self) -> FloatArray | None:
+        """Contacts (3, 2) at the first level; None where that is the escape level."""
+        ...
+
+
 class LocalCage(UpperBound, Protocol):
     """A strict minimum on one polygon, and the levels round it."""
 
@@ -45,7 +54,7 @@ class LocalCage(UpperBound, Protocol):
 
     def bound_above(
         self, polygon: Outline, contacts: FloatArray, first: float
-    ) -> UpperBound | None:
+    ) -> BoundAbove | None:
         """What bounds the levels from above on a polygon with corners right above those of this.
 
         ``contacts`` (3, 2) are those of the target between both polygons, ``first`` [unit] where

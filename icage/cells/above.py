@@ -15,7 +15,7 @@ import numpy as np
 from icage.arrays import BoolArray, FloatArray, IntArray
 from icage.cells.free_space import Configuration, FreeSpace, Search, search
 from icage.cells.kernels.along import Way, way_through
-from icage.cells.kernels.columns import EDGE_FROM, PASS_SIGMA
+from icage.cells.kernels.columns import EDGE_FROM, NODE_EDGE, PASS_SIGMA, RECORD_LEVEL, RECORD_NODE
 from icage.cells.kernels.facet import CLEARANCE
 from icage.cells.minima import path_edges, way_to_a_pinch
 from icage.geometry.exterior import Beside, pieces_beside
@@ -24,7 +24,7 @@ from icage.outline import Outline
 _IN_ONE_PIECE = 3
 """What ``Way.standing`` is where no finger has to stand."""
 
-_ABOVE_FIRST = 1e-8
+_ABOVE_FIRST = 1e-6
 """[1] The search for the first level goes this little (relative) above where it should be."""
 
 
@@ -36,6 +36,8 @@ class BoundAbove:
     start: Configuration
     way: Way
     sigma_first: float
+    first_contacts: FloatArray | None
+    """(3, 2) at the first level; None where that is the escape level."""
 
     @property
     def sigma_max(self) -> float:
@@ -71,12 +73,11 @@ def bound_above(
     )  # fmt: skip
     if not way.begins or way.standing < 0 or not _keeps_clear(cut, cells, way, free_space):
         return None
-    level = float(way.passes[:, PASS_SIGMA].max())
-    if first < level:
-        level = _first_level(free_space, cut.bent, cells[0], abs(w), first)
-        if level is None:
-            return None
-    return BoundAbove(free_space, Configuration(d, w), way, level)
+    start, level = Configuration(d, w), float(way.passes[:, PASS_SIGMA].max())
+    if first >= level:
+        return BoundAbove(free_space, start, way, level, None)
+    lower = _first_level(free_space, cut.bent, cells[0], abs(w), first)
+    return None if lower is None else BoundAbove(free_space, start, way, *lower)
 
 
 def _keeps_clear(cut: Beside, cells: IntArray, way: Way, free_space: FreeSpace) -> bool:
@@ -100,8 +101,11 @@ def _keeps_clear(cut: Beside, cells: IntArray, way: Way, free_space: FreeSpace) 
 
 def _first_level(
     free_space: FreeSpace, bent: BoolArray, cell: IntArray, sigma_0: float, first: float
-) -> float | None:
-    """The first level, where it should be; None if it is not there, or the pieces do not tell."""
+) -> tuple[float, FloatArray] | None:
+    """The first level and contacts (3, 2) there, up to where it should be.
+
+    None if there is none, or the pieces do not tell.
+    """
     found = search(free_space, cell, sigma_0, stop_above=first * (1.0 + _ABOVE_FIRST))
     pieces = free_space.pieces
     if bent.any():
@@ -111,5 +115,9 @@ def _first_level(
         near[owner[(beside >= 0) & bent[beside]]] = True
         if near[found.cells].any():
             return None
-    level = found.sigma_first()
-    return level if level < found.level else None
+    record = found.first_record()
+    if record is None:
+        return None
+    edge = int(found.nodes[int(found.records[record, RECORD_NODE]), NODE_EDGE])
+    contacts = free_space.contacts(found.edge_configuration(edge))
+    return float(found.records[record, RECORD_LEVEL]), contacts

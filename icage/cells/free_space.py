@@ -144,10 +144,15 @@ class Search:
 
         Basins met at the escape level itself belong to the escape, as in ``merge_tree``.
         """
+        record = self.first_record(depth)
+        return self.level if record is None else float(self.records[record, RECORD_LEVEL])
+
+    def first_record(self, depth: float = DEPTH_CUT) -> int | None:
+        """The record of the basin that is met at the first level; None if the escape is."""
         cut = depth * self.free_space.pieces.diameter
         level, birth = self.records[:, RECORD_LEVEL], self.records[:, RECORD_BIRTH]
         deep = np.flatnonzero((level < below_escape(self)) & (level - birth > cut))
-        return float(level[deep[0]]) if len(deep) else self.level
+        return int(deep[0]) if len(deep) else None
 
     def edge_configuration(self, edge: int) -> Configuration:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
