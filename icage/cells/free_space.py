@@ -56,11 +56,9 @@ class FreeSpace:
     worst: float
 
     @classmethod
-    def around(
-        cls, outline: Outline, hand: HandShape, *, merge: bool = True, above: Outline | None = None
-    ) -> FreeSpace:
-        """Cut the plane around the outline; see ``exterior_pieces``."""
-        pieces, origin = exterior_pieces(outline, hand, merge=merge, above=above)
+    def around(cls, outline: Outline, hand: HandShape, *, merge: bool = True) -> FreeSpace:
+        """Cut the plane around the outline; ``merge=False`` keeps raw triangles."""
+        pieces, origin = exterior_pieces(outline, hand, merge=merge)
         return cls.of_pieces(outline, hand, pieces, origin)
 
     @classmethod
@@ -144,15 +142,10 @@ class Search:
 
         Basins met at the escape level itself belong to the escape, as in ``merge_tree``.
         """
-        record = self.first_record(depth)
-        return self.level if record is None else float(self.records[record, RECORD_LEVEL])
-
-    def first_record(self, depth: float = DEPTH_CUT) -> int | None:
-        """The record of the basin that is met at the first level; None if the escape is."""
         cut = depth * self.free_space.pieces.diameter
         level, birth = self.records[:, RECORD_LEVEL], self.records[:, RECORD_BIRTH]
         deep = np.flatnonzero((level < below_escape(self)) & (level - birth > cut))
-        return int(deep[0]) if len(deep) else None
+        return float(level[deep[0]]) if len(deep) else self.level
 
     def edge_configuration(self, edge: int) -> Configuration:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
