@@ -13,8 +13,8 @@ from icage.hand import HandShape
 from icage.outline import Outline
 
 
-class UpperBound(Protocol):
-    """Levels around a target on an outer polygon, and a way out that shows the escape level."""
+class LocalCage(Protocol):
+    """A strict minimum on one polygon, and the levels round it."""
 
     @property
     def sigma_max(self) -> float:
@@ -26,14 +26,6 @@ class UpperBound(Protocol):
         """First level, [unit]; the escape level if no other minimum comes before it."""
         ...
 
-    def escape_path(self) -> tuple[FloatArray, float] | None:
-        """Placements (k, 4) to a pinched hand and the least finger gap on them, or None."""
-        ...
-
-
-class LocalCage(UpperBound, Protocol):
-    """A strict minimum on one polygon, and the levels round it."""
-
     def cage(
         self, contacts: FloatArray, outline: Outline, radius: float, *, way: bool = True
     ) -> Cage:
@@ -43,14 +35,8 @@ class LocalCage(UpperBound, Protocol):
         """
         ...
 
-    def bound_above(
-        self, polygon: Outline, contacts: FloatArray, first: float
-    ) -> UpperBound | None:
-        """What bounds the levels from above on a polygon with corners right above those of this.
-
-        ``contacts`` (3, 2) are those of the target between both polygons, ``first`` [unit] where
-        the first level should be, inf if the escape comes first. None if it takes a search to tell.
-        """
+    def escape_path(self) -> tuple[FloatArray, float] | None:
+        """Placements (k, 4) to a pinched hand and the least finger gap on them, or None."""
         ...
 
 
@@ -70,11 +56,7 @@ class Method(Protocol):
         ...
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
-        above: Outline | None = None,
-    ) -> LocalCage | None:  # fmt: skip
-        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None.
-
-        ``above`` is a polygon that its ``bound_above`` may be asked about.
-        """
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> LocalCage | None:
+        """The strict minimum within ``reach`` [diameter] and ``turn`` [rad], or None."""
         ...

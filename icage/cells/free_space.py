@@ -56,11 +56,9 @@ class FreeSpace:
     worst: float
 
     @classmethod
-    def around(
-        cls, outline: Outline, hand: HandShape, *, merge: bool = True, above: Outline | None = None
-    ) -> FreeSpace:
-        """Cut the plane around the outline; see ``exterior_pieces``."""
-        pieces, origin = exterior_pieces(outline, hand, merge=merge, above=above)
+    def around(cls, outline: Outline, hand: HandShape, *, merge: bool = True) -> FreeSpace:
+        """Cut the plane around the outline; ``merge=False`` keeps raw triangles."""
+        pieces, origin = exterior_pieces(outline, hand, merge=merge)
         return cls.of_pieces(outline, hand, pieces, origin)
 
     @classmethod

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, not_a_cage
-from icage.cells.above import BoundAbove, bound_above
 from icage.cells.free_space import FreeSpace, Search, Tree, merge_tree, search
 from icage.cells.largest_sigma import largest_sigma_in
 from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
@@ -44,12 +43,6 @@ class CellsLocalCage:
         space = self.found.free_space
         return cage_on(space, contacts, self.target, outline, radius, self.found, way=way)
 
-    def bound_above(
-        self, polygon: Outline, contacts: FloatArray, first: float
-    ) -> BoundAbove | None:
-        """The way out of this polygon as one of a slightly larger one, or None."""
-        return bound_above(self.found, polygon, contacts, first)
-
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None."""
         return escape_path(self.found, self.target) if self.found.escaped else None
@@ -73,11 +66,10 @@ class Cells:
         return cage_on(free_space, contacts, target, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
-        above: Outline | None = None,
-    ) -> CellsLocalCage | None:  # fmt: skip
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> CellsLocalCage | None:
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        free_space = FreeSpace.around(polygon, hand, above=above)
+        free_space = FreeSpace.around(polygon, hand)
         wanted = contacts_as_configuration(free_space, contacts)
         target = find_target(free_space, wanted, reach=reach, turn=turn)
         if target is None or target.plateau is not None:

@@ -200,18 +200,10 @@ def escape_path(found: Search, target: Target) -> tuple[FloatArray, float]:
     Between neighbours d and w move in a straight line, so every finger does; both ends lie in one
     cell (convex), so no finger enters the object, and |w| is convex, so it stays below the pass.
     """
+    free_space = found.free_space
     points = [target.at, *found.edge_configurations(path_edges(found))]
-    return way_to_a_pinch(found.free_space, points, max(found.standing, 0))
-
-
-def way_to_a_pinch(
-    free_space: FreeSpace, points: list[Configuration], standing: int
-) -> tuple[FloatArray, float]:
-    """Placements (k, 4) at these points and pinched at the end, where a finger (0..) stands still,
-    and the least finger gap before that.
-    """
     # the last piece, or the finger that stands still, takes all three
-    still = free_space.contacts(points[-1])[standing]
+    still = free_space.contacts(points[-1])[max(found.standing, 0)]
     # a last pass that is a pinched hand already is the end itself
     points = points[: corners_before_pinch([p.w for p in points], free_space.pieces.diameter)]
     d: ComplexArray = np.array([p.d for p in points])

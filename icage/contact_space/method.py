@@ -88,9 +88,6 @@ class ContactLocalCage:
             search=found.log(),
         )
 
-    def bound_above(self, polygon: Outline, contacts: FloatArray, first: float) -> None:
-        """Nothing: what the plane is split into changes with every corner."""
-
     def escape_path(self) -> tuple[FloatArray, float] | None:
         """Placements to a pinched hand and the least finger gap, or None.
 
@@ -153,11 +150,9 @@ class ContactSpace:
         return self._explored(plane, target).cage(contacts, outline, radius)
 
     def local_cage(
-        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float,
-        above: Outline | None = None,
-    ) -> ContactLocalCage | None:  # fmt: skip
+        self, polygon: Outline, hand: HandShape, contacts: FloatArray, reach: float, turn: float
+    ) -> ContactLocalCage | None:
         """The strict minimum nearest to the contacts and what surrounds it, or None."""
-        del above  # ``bound_above`` has no use for it
         plane = Plane.around(polygon, hand, merge=self.merge)
         target = find_contact_target(plane, contacts, reach=reach, turn=turn)
         if target is None or target.slide:

@@ -136,17 +136,16 @@ def quadrant_chord(radius: float, segments: int) -> float:
 
 
 def local_cage_on(
-    polygon: Outline, hand: HandShape, true: FloatArray, chord: float, method: Method,
-    above: Outline | None = None,
-) -> LocalCage | None:  # fmt: skip
+    polygon: Outline, hand: HandShape, true: FloatArray, chord: float, method: Method
+) -> LocalCage | None:
     """What is round the target on a polygon; None if it is not held.
 
     ``chord`` [unit] is the length of the chord that a contact on an arc rests on, anywhere; 0 if
-    there is none. ``above``: see ``icage.method.Method.local_cage``.
+    there is none.
     """
     part = chord / polygon.diameter
     return method.local_cage(
-        polygon, hand, true, max(TARGET_SHIFT, part), max(TARGET_TURN, 10.0 * part), above
+        polygon, hand, true, max(TARGET_SHIFT, part), max(TARGET_TURN, 10.0 * part)
     )
 
 

@@ -87,23 +87,6 @@ class TrueCurve:
         reach = self.radius / np.cos(0.5 * step)
         return self._ring(arc[begin], at[begin] + 0.5 * step, reach)
 
-    def outer_and_inner(
-        self, segments: int, through: FloatArray | None = None
-    ) -> tuple[Outline, Outline]:
-        """``outer``, and chords whose ends lie right beneath its corners, vertex for vertex.
-
-        On an arc that one of the points ``through`` is on, that point lies over the middle of a
-        short chord, as in ``inner``. Raises what ``outer`` raises.
-        """
-        arc, at = self._stops(segments, through, touched=True)
-        begin = np.flatnonzero(arc[1:] == arc[:-1])
-        half = 0.5 * (at[begin + 1] - at[begin])
-        middle = at[begin] + half
-        return (
-            self._ring(arc[begin], middle, self.radius / np.cos(half)),
-            self._ring(arc[begin], middle, np.full(len(begin), self.radius)),
-        )
-
     def sagitta(self, segments: int) -> float:
         """Most that the inner polygon may lie inside the curve, [unit]."""
         turn = self.elements.turn

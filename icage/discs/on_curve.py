@@ -28,7 +28,7 @@ from icage.errors import GeometryError
 from icage.geometry.statics import contacts_reason
 from icage.geometry.way_out import least_gap_on
 from icage.hand import HandShape
-from icage.method import Method, UpperBound
+from icage.method import LocalCage, Method
 from icage.outline import Outline
 from icage.tolerance import NOT_A_CAGE, SIGMA_MAX_GAP, TARGET_SHIFT
 
@@ -43,6 +43,7 @@ def plan_discs(
     """The cage of disc fingers whose centres stand on ``contacts`` (3, 2)."""
     try:
         curve = TrueCurve.of(outline, radius)
+        curve.inner(SEGMENTS[0])
     except GeometryError:
         check_disc_contacts(outline, radius, contacts)
         return plan_by_resolutions(outline, hand, contacts, radius, method)
@@ -90,7 +91,7 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
         and near(levels.polygon_first, levels.sigma_first, wide)
     ):
         return None  # another puncture may be as near
-    outer = bound.upper
+    outer = bound.local_cage
     low, high, solved = cage.sigma_max, outer.sigma_max, levels.sigma_max
     if low is None or solved is None:
         return None if np.isfinite(high) else _finished(look, inner, None, None)
@@ -105,7 +106,7 @@ def _enclosed(look: Polygons, bound: Bound | None, inner: Solved) -> Cage | None
     return _finished(look, inner, max(high, solved), outer)
 
 
-def _finished(look: Polygons, inner: Solved, upper: float | None, outer: UpperBound | None) -> Cage:
+def _finished(look: Polygons, inner: Solved, upper: float | None, outer: LocalCage | None) -> Cage:
     cage, levels = inner.cage, inner.levels
     target = levels.grasps[0].contacts
     path, gap = cage.escape_path, cage.min_finger_gap

@@ -23,8 +23,12 @@ from icage.discs.hidden import hidden_minima
 from icage.discs.offsets import directions_on_arcs, offsets
 from icage.discs.true_levels import REACH, SAME, TrueLevels, true_levels
 from icage.errors import GeometryError
-from icage.method import LocalCage, Method, UpperBound
+from icage.method import LocalCage, Method
 from icage.outline import Outline
+
+_COARSE = 4
+"""Segments a quadrant of the outer polygon that only bounds a level, tried first. For one that
+names features 4 are too few: of 600 targets two then had a wrong sigma_first or one grasp twice."""
 
 _ROUNDS = 4
 """Times that an inner polygon is drawn again through new punctures."""
@@ -58,15 +62,12 @@ class Solved(NamedTuple):
     sagitta: float
     """[unit] How far the polygon lies off the curve at most."""
     again: bool = False
-    tangents: Outline | None = None
-    """The outer polygon through the same contacts, where this is an inner one's that has its
-    vertices right beneath those of it."""
 
 
 class Bound(NamedTuple):
     """What encloses the solved levels from above, and the levels solved from tangents."""
 
-    upper: UpperBound
+    local_cage: LocalCage
     levels: TrueLevels
     """Of the outer polygon that names features."""
     own: Solved | None
@@ -107,13 +108,13 @@ class Polygons:
         """The levels from the tangents through the target; None if these do not hold it."""
         if through is None:
             through = self.resting
-        local_cage = self._local_cage(self._outer_polygon(through))
+        local_cage = self._local_cage(self._outer_polygon(self.segments, through), self.segments)
         if local_cage is None:
             return None
         cage = self._cage(local_cage)
         if cage.status == "not_a_cage":
             return None
-        return self._solved(local_cage, cage, through)
+        return self._solved(local_cage, cage, through, self.segments)
 
     def begin(self, outer: Solved | None) -> FloatArray:
         """Contacts (k, 2) on arcs that an inner polygon is drawn through first."""
@@ -130,10 +131,8 @@ class Polygons:
         found: Solved | None = None
         last: TrueLevels | None = None
         for _ in range(_ROUNDS):
-            polygon, tangents = self._polygons(through)
-            if polygon is None:
-                return None
-            local_cage = self._local_cage(polygon, tangents)
+            polygon = self.curve.inner(self.segments, through)
+            local_cage = self._local_cage(polygon, self.segments)
             if local_cage is None:
                 if self.target is not None:
                     return None
@@ -143,7 +142,7 @@ class Polygons:
             cage = self._cage(local_cage)
             if cage.status == "not_a_cage":
                 return replace(cage, contacts=self.contacts)
-            found = self._solved(local_cage, cage, through)._replace(tangents=tangents)
+            found = self._solved(local_cage, cage, through, self.segments)
             new = self._new_on_arcs(found, through)
             if not len(new):
                 break
@@ -164,8 +163,7 @@ class Polygons:
             coarse = self.outer_levels(inner.through)
             if coarse is None:
                 return None
-        outer: UpperBound = coarse.local_cage
-        through = coarse.through
+        outer, through = coarse.local_cage, coarse.through
         own: Solved | None = None
         more = inner.through[len(through) :]
         for _ in range(_ROUNDS):
@@ -173,20 +171,16 @@ class Polygons:
                 break
             if len(more):
                 through = np.vstack([through, more])
-                above = self._above(inner, through)
-                if above is not None:
-                    outer = above
-                    break
-                drawn = self._local_cage(self._outer_polygon(through))
+                drawn = self._drawn_close(through, levels.sigma_max)
                 if drawn is None:
                     return None
-                outer = drawn
-                if _encloses(drawn, levels):
+                outer, segments = drawn
+                if _encloses(outer, levels):
                     break
-                cage = self._cage(drawn)
+                cage = self._cage(outer)
                 if cage.status == "not_a_cage":
                     break
-                own = self._solved(drawn, cage, through)
+                own = self._solved(outer, cage, through, segments)
             else:
                 own = coarse
             more = self._new_on_arcs(own, through)
@@ -195,18 +189,22 @@ class Polygons:
                 break
         return Bound(outer, coarse.levels, own)
 
-    def _above(self, inner: Solved, through: FloatArray) -> UpperBound | None:
-        """The bound on the tangents above the chords of an inner polygon; None if it is no tight
-        one, or if these are not the contacts that they were drawn through.
+    def _drawn_close(
+        self, through: FloatArray, level: float | None
+    ) -> tuple[LocalCage, int] | None:
+        """The outer polygon through these contacts (k, 2), and its segments: few if these will do.
+
+        None if the target is held by none.
         """
-        levels = inner.levels
-        if inner.tangents is None or len(through) != len(inner.through):
-            return None
-        first = levels.sigma_first
-        if first is None or first == levels.sigma_max:
-            first = np.inf
-        found = inner.local_cage.bound_above(inner.tangents, self.true, first)
-        return found if found is not None and _encloses(found, levels) else None
+        found: list[tuple[LocalCage, int]] = []
+        for segments in (_COARSE, self.segments):
+            polygon = self._outer_polygon(segments, through)
+            local_cage = self._local_cage(polygon, segments)
+            if local_cage is not None:
+                found.append((local_cage, segments))
+                if near(_finite(local_cage.sigma_max), level, TIGHT):
+                    break
+        return min(found, key=lambda one: one[0].sigma_max, default=None)
 
     def named_by(self, bound: Bound | None, inner: Solved) -> FloatArray:
         """Contacts (k, 2) of other punctures that the outer polygon takes for the levels.
@@ -222,44 +220,31 @@ class Polygons:
         """The cage on one polygon; its way out is not asked for, the bound from above has one."""
         return local_cage.cage(self.contacts, self.curve.outline, self.curve.radius, way=False)
 
-    def _local_cage(self, polygon: Outline, above: Outline | None = None) -> LocalCage | None:
+    def _local_cage(self, polygon: Outline, segments: int) -> LocalCage | None:
         """What is round the target, which rests on short chords or else anywhere on long ones."""
         chords = [0.0]
         if len(self.resting):
             radius = self.curve.radius
-            chords = [2.0 * RESTING * radius, quadrant_chord(radius, self.segments)]
+            chords = [2.0 * RESTING * radius, quadrant_chord(radius, segments)]
         for chord in chords:
-            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method, above)
+            found = local_cage_on(polygon, self.critical.hand, self.true, chord, self.method)
             if found is not None:
                 return found
         return None
 
-    def _polygons(self, through: FloatArray) -> tuple[Outline | None, Outline | None]:
-        """Chords through these contacts, and the tangents whose corners are right above their ends.
-
-        None for what runs into itself.
-        """
-        try:
-            outer, inner = self.curve.outer_and_inner(self.segments, through)
-            return inner, outer
-        except GeometryError:
-            pass
-        try:
-            return self.curve.inner(self.segments, through), None
-        except GeometryError:
-            return None, None
-
-    def _outer_polygon(self, through: FloatArray) -> Outline:
+    def _outer_polygon(self, segments: int, through: FloatArray) -> Outline:
         """Tangents through these contacts; where two of them cross, the union of them all."""
         curve = self.curve
         try:
-            return curve.outer(self.segments, through)
+            return curve.outer(segments, through)
         except GeometryError:
             arcs = directions_on_arcs(curve.outline, curve.radius, through)
-            return offsets(curve.outline, curve.radius, self.segments, arcs).outer
+            return offsets(curve.outline, curve.radius, segments, arcs).outer
 
-    def _solved(self, local_cage: LocalCage, cage: Cage, through: FloatArray) -> Solved:
-        sagitta = self.curve.sagitta(self.segments)
+    def _solved(
+        self, local_cage: LocalCage, cage: Cage, through: FloatArray, segments: int
+    ) -> Solved:
+        sagitta = self.curve.sagitta(segments)
         levels = true_levels(self.critical, cage, sagitta, self.target)
         return Solved(local_cage, cage, levels, through, sagitta)
 
@@ -297,7 +282,7 @@ def _finite(level: float) -> float | None:
     return level if np.isfinite(level) else None
 
 
-def _encloses(outer: UpperBound, levels: TrueLevels) -> bool:
+def _encloses(outer: LocalCage, levels: TrueLevels) -> bool:
     """Whether the levels of an outer polygon are the solved ones: nothing is left between."""
     if not near(_finite(outer.sigma_max), levels.sigma_max, INSIDE):
         return False

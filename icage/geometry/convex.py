@@ -87,10 +87,7 @@ def _counterclockwise(vertices: FloatArray, triangles: IntArray) -> IntArray:
 
 
 def merge_convex(
-    vertices: FloatArray,
-    triangles: IntArray,
-    max_edges: int = MAX_EDGES,
-    also_at: FloatArray | None = None,
+    vertices: FloatArray, triangles: IntArray, max_edges: int = MAX_EDGES
 ) -> list[list[int]]:
     """Join triangles across shared diagonals while the pieces stay convex. [Hertel1983]
 
@@ -106,9 +103,6 @@ def merge_convex(
         (m, 3) indices, counterclockwise, meeting edge to edge.
     max_edges:
         Largest number of edges of a piece, at least 3.
-    also_at:
-        (n, 2) other places of the vertices, where merged pieces are to be convex, too (triangles
-        that turn over there stay as they are).
 
     Returns
     -------
@@ -120,9 +114,7 @@ def merge_convex(
     twin = twins(origin, corners[:, [1, 2, 0]].ravel(), len(places))
     order = _longest_first(places, origin, twin)
     x, y = np.ascontiguousarray(places[:, 0]), np.ascontiguousarray(places[:, 1])
-    other = np.empty((0, 2)) if also_at is None else also_at
-    u, v = np.ascontiguousarray(other[:, 0]), np.ascontiguousarray(other[:, 1])
-    merged, ends, certain = merge_rings(x, y, u, v, origin, twin, order, max_edges)
+    merged, ends, certain = merge_rings(x, y, origin, twin, order, max_edges)
     if certain:
         numbers, last = merged.tolist(), ends.tolist()
         return sorted(numbers[a:b] for a, b in zip([0, *last[:-1]], last, strict=True))

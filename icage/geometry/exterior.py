@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from icage.arrays import BoolArray, FloatArray, IntArray
+from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
 from icage.geometry.convex import merge_convex, triangulate, twins
-from icage.geometry.kernels.merging import FILTER
 from icage.geometry.round_chains import with_apexes
 from icage.hand import HandShape
 from icage.kernels.straight import corners
@@ -27,12 +26,6 @@ WALL = -1
 
 BOX = -2
 """Neighbour of a slot that is an edge of the box."""
-
-_CORNERS = 4
-"""Corners of the box: the first vertices."""
-
-_TO_SPARE = 1.01
-"""[1] The box is so much further away than it has to be: a little larger an object fits, too."""
 
 
 class Pieces(NamedTuple):
@@ -94,104 +87,33 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
 
 
 def exterior_pieces(
-    outline: Outline,
-    hand: HandShape,
-    *,
-    merge: bool = True,
-    apexes: bool = True,
-    above: Outline | None = None,
+    outline: Outline, hand: HandShape, *, merge: bool = True, apexes: bool = True
 ) -> tuple[Pieces, FloatArray]:
     """Convex pieces of the box minus the object, and the origin their coordinates are relative to.
 
     ``merge=False`` keeps the raw triangles, ``apexes=False`` the outline's own vertices even where
-    it is round: slower, and other formulations of the same space. Pieces that are merged are convex
-    for ``above``, too, where that has as many vertices, each a little further out or just there.
+    it is round: slower, and other formulations of the same space.
     """
     origin = outline.vertices[0].copy()
     ring = without_straight_vertices(outline.vertices - origin, outline.diameter)
     if len(ring) < 3:
         raise GeometryError("the outline is nothing but straight vertices")
-    margin = _TO_SPARE * _margin(outline, hand)
+    longest = max(1.0, abs(hand.z_3), abs(hand.z_3 - 1.0))
+    margin = 1.01 * outline.diameter * longest / shortest_side(hand)
     low, high = ring.min(axis=0) - margin, ring.max(axis=0) + margin
     box = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
-    corner = _CORNERS
+    corner = len(box)
     vertices = np.concatenate([box, ring])
     used, fans = np.arange(len(vertices)), list[list[int]]()
     if apexes:
-        coarse, points, fans = with_apexes(ring)
-        vertices = np.concatenate([vertices, points])
+        coarse, above, fans = with_apexes(ring)
+        vertices = np.concatenate([vertices, above])
         used = np.concatenate([used[:corner], corner + coarse])
     _, triangles = triangulate(shapely.Polygon(box, [vertices[used[corner:]]]))
     triangles = used[triangles]
-    also_at = None
-    if above is not None and len(above.vertices) == len(ring):
-        also_at = vertices.copy()
-        also_at[corner : corner + len(ring)] = above.vertices - origin
-    rings = merge_convex(vertices, triangles, also_at=also_at) if merge else triangles.tolist()
+    rings = merge_convex(vertices, triangles) if merge else triangles.tolist()
     rings += [[corner + v for v in triangle] for triangle in fans]
     return _as_pieces(vertices, rings, outline.diameter), origin
-
-
-class Beside(NamedTuple):
-    """Pieces of an outline that is nearly another one, cut as that was, and their origin (2,).
-
-    ``bent`` are those that are not convex here: of these only what all half planes hold is theirs.
-    """
-
-    pieces: Pieces
-    origin: FloatArray
-    bent: BoolArray
-
-
-def pieces_beside(pieces: Pieces, outline: Outline, hand: HandShape) -> Beside | None:
-    """The pieces of another outline, cut in the same way; None if they cannot be.
-
-    ``outline`` is, vertex for vertex, one that the pieces are for, moved by a little; its first
-    vertex is that one's, bit for bit.
-    """
-    origin = outline.vertices[0].copy()
-    ring = outline.vertices - origin
-    ends = slice(_CORNERS, _CORNERS + len(ring))
-    if len(pieces.wall_from) != len(ring):  # every edge is a wall; straight vertices were dropped
-        return None
-    x, y = pieces.x.copy(), pieces.y.copy()
-    x[ends], y[ends] = ring.T
-    margin = _margin(outline, hand)
-    for box, at in ((pieces.x[:_CORNERS], ring[:, 0]), (pieces.y[:_CORNERS], ring[:, 1])):
-        if at.min() - box.min() < margin or box.max() - at.max() < margin:
-            return None
-    moved = (x != pieces.x) | (y != pieces.y)
-    following = np.arange(1, len(pieces.slot_vertex) + 1)
-    following[pieces.ptr[1:] - 1] = pieces.ptr[:-1]
-    first = pieces.slot_vertex
-    second = first[following]
-    left = _turn_left(x, y, first, second, second[following], moved)
-    owner = np.repeat(np.arange(pieces.total), np.diff(pieces.ptr))
-    bent = np.zeros(pieces.total, dtype=np.bool_)
-    bent[owner[~left]] = True
-    side_x, side_y = x[second] - x[first], y[second] - y[first]
-    length = np.hypot(side_x, side_y)
-    beside = pieces._replace(
-        x=x, y=y, normal_x=-side_y / length, normal_y=side_x / length, scale=outline.diameter,
-        diameter=outline.diameter,
-    )  # fmt: skip
-    return Beside(beside, origin, bent)
-
-
-def _margin(outline: Outline, hand: HandShape) -> float:
-    """How far the box has to be from the object at least, [unit]: see above."""
-    longest = max(1.0, abs(hand.z_3), abs(hand.z_3 - 1.0))
-    return outline.diameter * longest / shortest_side(hand)
-
-
-def _turn_left(
-    x: FloatArray, y: FloatArray, a: IntArray, b: IntArray, c: IntArray, moved: BoolArray
-) -> BoolArray:
-    """Which corners a, b, c turn left for certain; those that have not moved do."""
-    left = (x[a] - x[c]) * (y[b] - y[c])
-    right = (y[a] - y[c]) * (x[b] - x[c])
-    certain = left - right > FILTER * (np.abs(left) + np.abs(right))
-    return certain | ~(moved[a] | moved[b] | moved[c])
 
 
 def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) -> Pieces:

@@ -46,12 +46,11 @@ def _corner(x, y, before, at, after):
 
 
 @compiled
-def merge_rings(x, y, u, v, origin, twin, order, max_edges):
+def merge_rings(x, y, origin, twin, order, max_edges):
     """Rings of vertices of the merged pieces, each from its smallest one, one after the other.
 
-    ``order``: half edges of the diagonals as they are to be removed. Where vertices have other
-    places u, v, pieces are convex there, too; none: empty. Returns the vertices, where rings end
-    among them, and whether every sign was certain.
+    ``order``: half edges of the diagonals as they are to be removed. Returns the vertices, where
+    rings end among them, and whether every sign was certain.
     """
     count = len(origin)
     after = np.empty(count, np.int64)
@@ -77,11 +76,7 @@ def merge_rings(x, y, u, v, origin, twin, order, max_edges):
             turn = _corner(x, y, origin[before[here]], origin[here], origin[after[after[there]]])
             if turn == _UNSURE:
                 return np.empty(0, np.int64), np.empty(0, np.int64), False
-            if turn != 0 and len(u) > 0:
-                turn = _corner(
-                    u, v, origin[before[here]], origin[here], origin[after[after[there]]]
-                )
-            if turn != 1:
+            if turn == 0:
                 convex = 0
                 break
             here, there = there, here
