@@ -162,6 +162,7 @@ class GuidedDriver:
     _tries: IntArray = field(init=False, repr=False)
     _back_to: FloatArray = field(init=False, repr=False)
     _slow_to: FloatArray = field(init=False, repr=False)
+    _widest: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         count, pull = len(self.openings), self.pull
@@ -178,6 +179,7 @@ class GuidedDriver:
         object.__setattr__(self, "_tries", np.zeros(count, dtype=np.int64))
         object.__setattr__(self, "_back_to", np.full(count, np.inf))
         object.__setattr__(self, "_slow_to", np.zeros(count))
+        object.__setattr__(self, "_widest", float(self.path[:, 3].max()))
 
     @property
     def max_steps(self) -> int:
@@ -204,11 +206,13 @@ class GuidedDriver:
         piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)
         wrench[ids] += self._jitter[ids, piece]
         stop = self.openings[ids]
-        wider = np.maximum(stop / self.path[:, 3].max(), 1.0)
-        sigma = np.minimum(goal[:, 3] * wider, stop * (1.0 + _AT_STOP))
-        sigma = np.where(goal[:, 3] * wider >= stop * (1.0 - _AT_STOP), stop * PUSH, sigma)
+        wider = np.maximum(stop / self._widest, 1.0)
+        wanted = goal[:, 3] * wider
+        sigma = np.minimum(wanted, stop * (1.0 + _AT_STOP))
+        sigma = np.where(wanted >= stop * (1.0 - _AT_STOP), stop * PUSH, sigma)
         motor[ids] = opening_force(self.scene, sigma, qpos[ids], pull.grip_rate, pull.grip)
-        return self._stuck(ids[self._waited[ids] > pull.patience])
+        stuck = ids[self._waited[ids] > pull.patience]
+        return self._stuck(stuck) if len(stuck) else stuck
 
     def _stuck(self, ids: IntArray) -> IntArray:
         """Send stuck carrots back; returns those that were sent back too often already."""

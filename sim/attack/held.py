@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple, Protocol
 
@@ -42,6 +42,9 @@ RUNNING, ESCAPED, HELD, DIVERGED = AttackCode
 
 ATTACK_ENDINGS = tuple(code.name.lower() for code in AttackCode)
 """The words for the codes, in their order: those of files and reports."""
+
+_RUNNING = int(RUNNING)
+"""Numpy looks for six special methods of an enum at every comparison, and of a number for none."""
 
 _DEPTH_MAX, _RISE_MAX = range(2)
 """Columns of what is seen."""
@@ -150,6 +153,20 @@ class AttackMonitor:
     ending: IntArray
     _hull: FloatArray
     _seen: FloatArray
+    _told: tuple[_Shape, _Record, float] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # what the compiled loop reads and updates is the same at every look: gathered once
+        scene, kinematics = self.scene, self.scene.kinematics
+        shape = _Shape(
+            scene.object.vertices,
+            self._hull,
+            scene.finger_radius / scene.object.diameter,
+            kinematics.directions,
+            kinematics.tendon_coefficients,
+        )
+        record = _Record(self.openings, self._seen, self.steps, self.ending)
+        object.__setattr__(self, "_told", (shape, record, SHUT / kinematics.longest_side))
 
     @classmethod
     def over(cls, scene: Scene, openings: FloatArray) -> AttackMonitor:
@@ -166,23 +183,13 @@ class AttackMonitor:
 
     def look(self, ids: IntArray, step: int, qpos: FloatArray, qvel: FloatArray) -> None:
         """Look at the attacks ``ids`` after step number ``step``; qpos and qvel are (N, 6)."""
-        scene, kinematics = self.scene, self.scene.kinematics
         look: Callable[..., None] = _look
-        shape = _Shape(
-            scene.object.vertices,
-            self._hull,
-            scene.finger_radius / scene.object.diameter,
-            kinematics.directions,
-            kinematics.tendon_coefficients,
-        )
-        record = _Record(self.openings, self._seen, self.steps, self.ending)
-        shut_sigma = SHUT / kinematics.longest_side
-        look(ids, qpos, qvel, shape, record, shut_sigma, step % LOOK_EVERY == 0)
+        look(ids, qpos, qvel, *self._told, step % LOOK_EVERY == 0)
 
     @property
     def running(self) -> IntArray:
         """Ids of the attacks that have not ended."""
-        return np.flatnonzero(self.ending == RUNNING)
+        return np.flatnonzero(self.ending == _RUNNING)
 
     def attacks(self, end: FloatArray) -> Attacks:
         """What became of them, at ``end`` (N, 6); those still running are held."""
@@ -231,7 +238,8 @@ def attack(
             if step % LOOK_EVERY == 0:
                 warned = batch.warning[running, :, 1].any(axis=1)
                 ending[running[warned]] = DIVERGED
-            ending[given_up[ending[given_up] == RUNNING]] = HELD
+            if len(given_up):
+                ending[given_up[ending[given_up] == _RUNNING]] = HELD
             running = lookout.running
             if not len(running):
                 break

@@ -118,4 +118,4 @@ def opening_force(
     spread, damping = scene.kinematics.spread, scene.config.finger_damping
     limit = speed * damping * spread
     wanted = rate * damping * spread * spread * (sigma - scene.sigma(qpos))
-    return np.clip(wanted, -limit, limit)
+    return np.minimum(np.maximum(wanted, -limit), limit)

@@ -58,5 +58,5 @@ def _attack(
         state = world.step(float(motor[i]), tuple(wrench[i].tolist()))
         qpos[i], qvel[i] = state[:6], state[6:]
         lookout.look(only, step, qpos, qvel)
-        if lookout.ending[i] != RUNNING:
+        if int(lookout.ending[i]) != RUNNING:
             return

@@ -1,4 +1,4 @@
-"""How deep a disc is, from the few edges that can be nearest: the same bits for a tenth of the cost.
+"""How deep a disc is, from the few edges that can be nearest: the same bits as from all.
 
 A grid over the object. What is nearest to any point of a cell is among the edges that are farther
 from the cell's middle by at most its diagonal than the nearest one is: two or three, mostly. A
@@ -19,7 +19,7 @@ from icage.arrays import FloatArray, IntArray
 from sim.world.hand_in_object import depth_at, edge_square
 
 CELLS: Final = 256
-"""In a row of the grid: a cell is some 5e-3 diameters wide."""
+"""In a row of the grid: a cell is some 4e-3 diameters wide."""
 
 MANY: Final = 24
 """[closing] From this many on a grid is made. It takes up to 4 MB, and as many grids as there are
@@ -58,7 +58,9 @@ def near_edges(vertices: FloatArray, radius: float, closings: int) -> NearEdges:
     room = radius + _MARGIN
     side = float((high - low).max()) + 2.0 * room
     half = math.sqrt(0.5) * side / CELLS + _WIDER
-    return NearEdges(low - room, CELLS / side, half, np.zeros((cells, cells, 1 + _LISTED), np.int64))
+    return NearEdges(
+        low - room, CELLS / side, half, np.zeros((cells, cells, 1 + _LISTED), np.int64)
+    )
 
 
 @njit(cache=True)

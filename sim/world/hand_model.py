@@ -71,6 +71,10 @@ class HandKinematics:
         L_k, (3,), travel of each slide per unit of sigma.
     longest_side:
         Longest side of the unit triangle, at least 1.
+    spread:
+        Root of sum L_k^2: turns sigma into a size that no relabelling of fingers changes.
+    tendon_coefficients:
+        L_k / sum L_j^2, (3,): the tendon's length over the slides is then sigma.
     """
 
     shape: HandShape
@@ -78,6 +82,8 @@ class HandKinematics:
     directions: FloatArray = field(init=False, repr=False)
     lengths: FloatArray = field(init=False)
     longest_side: float = field(init=False)
+    spread: float = field(init=False, repr=False, compare=False)  # read at every step
+    tendon_coefficients: FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         centroid = complex(self.shape.z.mean())
@@ -91,16 +97,9 @@ class HandKinematics:
         object.__setattr__(
             self, "longest_side", max(abs(z_2 - z_1), abs(z_3 - z_2), abs(z_1 - z_3))
         )
-
-    @property
-    def spread(self) -> float:
-        """Root of sum L_k^2: turns sigma into a size that no relabelling of fingers changes."""
-        return math.hypot(*self.lengths.tolist())
-
-    @property
-    def tendon_coefficients(self) -> FloatArray:
-        """L_k / sum L_j^2, (3,): the tendon's length over the slides is then sigma."""
-        return self.lengths / self.spread**2
+        spread = math.hypot(*lengths.tolist())
+        object.__setattr__(self, "spread", spread)
+        object.__setattr__(self, "tendon_coefficients", read_only(lengths / spread**2))
 
     @property
     def shape_projector(self) -> FloatArray:
