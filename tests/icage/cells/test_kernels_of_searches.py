@@ -43,7 +43,9 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
     room = new_room()
     cells, _ = cells_near(s.pieces, s.z, s.hand, 0.05 * s.size, 10**6)
     far = s.rng.integers(0, len(s.pieces.ptr) - 1, (20, 3))  # most of them hold no hand
-    chosen = np.concatenate([cells[s.rng.permutation(len(cells))[:25]], far])
+    alike = far[:9].copy()  # fingers in one piece: the first two, the last two, all
+    alike[:3, 1], alike[3:6, 1], alike[6:] = alike[:3, 0], alike[3:6, 2], alike[6:, :1]
+    chosen = np.concatenate([cells[s.rng.permutation(len(cells))[:25]], far, alike])
     args = (s.space.cap, s.space.worst)
     table = births(s.pieces, s.z, chosen, *args)
     told = [0, 0]
