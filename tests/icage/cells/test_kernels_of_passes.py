@@ -31,7 +31,7 @@ from icage.cells.kernels.min_norm import (
     min_norm_careful,
 )
 from icage.cells.kernels.near import Hand, cells_near
-from icage.cells.kernels.passes import new_room, pass_fast, pass_value
+from icage.cells.kernels.passes import _put, new_room, pass_fast, pass_value
 from tests.icage.cells.setting import Setting
 from tests.oracles.geometry import Floats
 from tests.oracles.half_planes import least_norm
@@ -301,6 +301,24 @@ def test_double_doubles_tell_what_doubles_cannot() -> None:
     assert asked(*[(*r, -1e-20, 0.0) for r in star]) == FOUND
 
 
+def test_a_row_without_a_direction_is_left_to_double_doubles() -> None:
+    """Where rounding is all there is of g, it is not known whether the row holds."""
+    rows = np.full((2, 5), np.nan)
+
+    def put(g: float, c: float, err: float = 1e-14) -> tuple[int, int]:
+        count, status = _put(0.6 * g, 0.8 * g, c, err, 0.5 * err, 1.0, 10.0, rows, 1)
+        return int(count), int(status)
+
+    assert put(1e-13, 0.0) == (1, UNSURE)
+    assert put(1e-13, 1e-12) == (1, UNSURE)
+    assert put(1e-13, -1e-12) == (1, UNSURE)
+    assert put(1e-13, 1e-11) == (1, INFEASIBLE)
+    assert put(1e-13, -1e-11) == (1, FOUND)  # it holds for every hand
+    assert np.isnan(rows).all()
+    assert put(0.5, 2.0) == (2, FOUND)
+    assert rows[1] == pytest.approx([0.6, 0.8, 4.0, 2e-14, 1e-14])
+
+
 def facets(s: Setting, count: int, spread: float) -> list[tuple[np.ndarray, int, int]]:
     """Cells round the target, with a finger and an edge of its piece."""
     found = []
@@ -377,6 +395,11 @@ def test_the_least_opening_on_a_facet_is_held_by_what_it_touches(seed: int) -> N
         assert (finger.real, finger.imag) == pytest.approx(tuple(spot), abs=1e-6 * s.size)
         if value < 1e-6 * s.size:
             continue
+        # a hand that is too small by rounding stands in the middle of what is left: nothing
+        shrunk = ends_on_facet(s.pieces, s.z, cell, i, slot, *(np.array([wx, wy]) * (1.0 - 1e-8)))
+        if high - low < 1e-9 * s.size:
+            assert (shrunk.x_lo, shrunk.y_lo) == pytest.approx(tuple(spot), abs=1e-5 * s.size)
+            assert (shrunk.x_hi, shrunk.y_hi) == pytest.approx(tuple(spot), abs=1e-5 * s.size)
         tau = 0.5 * (low + high)
         tight = own @ [wx, wy, tau, -1.0] < 1e-7 * s.size
         _force, miss = nnls(own[tight][:, :3].T, np.array([wx, wy, 0.0]))
