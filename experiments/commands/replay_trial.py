@@ -104,7 +104,7 @@ def document(done: Rerun) -> dict[str, Any]:
         "set": trial.row["set"],
         "trial": trial.row["trial"],
         "seed": trial.row["seed"],
-        "unit": trial.run["unit"],
+        "unit": trial.unit,
         "start": closing.start.as_array(),
         "verdict": trial.row["verdict"],
         "recorded": {
@@ -142,7 +142,7 @@ def _now(done: Rerun) -> dict[str, Any]:
 def summary(done: Rerun) -> Iterator[str]:
     """Lines for a reader."""
     trial, now = done.trial, _now(done)
-    unit = trial.run["unit"]
+    unit = trial.unit
     yield (
         f"{trial.row['grasp']}, {trial.row['set']} set, trial {trial.row['trial']} "
         f"(row {trial.index}), seed {trial.row['seed']}"

@@ -94,6 +94,13 @@ class RecordedTrial:
         return Placement(*(self.row[f"start_{name}"] for name in _POSE))
 
     @property
+    def unit(self) -> str:
+        """Of lengths, as the case has it."""
+        if not isinstance(self.run["unit"], str):
+            raise TypeError(f"the unit is {type(self.run['unit']).__name__}")
+        return self.run["unit"]
+
+    @property
     def scene(self) -> Scene:
         """Object and hand, compiled afresh."""
         return Scene(self.outline, self.hand, self.run["plan"]["finger_radius"], self.config)
@@ -174,7 +181,7 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
         # what is wrong with what is made of it later is said here
         if not trial.grasps:
             raise RecordingError(f"{str(folder / JSON)!r} is not a replay: a run without grasps")
-        _ = trial.start, a_number(run["plan"]["finger_radius"], "finger_radius")
+        _ = trial.start, a_number(run["plan"]["finger_radius"], "finger_radius"), trial.unit
         return trial
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error

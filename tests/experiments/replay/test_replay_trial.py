@@ -149,6 +149,18 @@ def test_a_grasp_or_a_plateau_that_is_none_is_an_input_error(
         assert "is not a replay" in told or "contacts" in told, wrong
 
 
+@pytest.mark.parametrize("unit", [None, 7, []])
+def test_a_run_without_a_unit_is_an_input_error(
+    folder: Path, tmp_path: Path, unit: object, capsys: Any
+) -> None:
+    runs = json.loads((folder / "replay.json").read_text())["runs"]
+    runs[0]["unit"] = unit
+    if unit is None:
+        del runs[0]["unit"]
+    other = copied(folder, tmp_path / "other", runs=runs)
+    assert "is not a replay" in here(capsys, "replay-trial", str(other), "0").error_line()
+
+
 @pytest.mark.slow
 def test_it_is_filmed(folder: Path, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video, "find_backend", lambda: None)

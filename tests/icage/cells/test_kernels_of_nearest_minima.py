@@ -103,6 +103,27 @@ def test_the_nearest_minimum_on_a_plateau_is_where_it_was_asked_for(size: float)
     assert none.total > 0
 
 
+@pytest.mark.parametrize("turn", [0.3, 0.5 * np.pi, 2.0, -1.1])
+def test_a_turned_bar_has_its_minimum_where_it_was_asked_for(turn: float) -> None:
+    way = np.exp(1j * turn)
+    bar, held = ([1.0, 1j] @ np.array(points).T * way for points in (
+        [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]], [[1.2, 0.0], [2.8, 0.0], [2.0, 1.0]],
+    ))  # fmt: skip
+    contacts = np.column_stack([held.real, held.imag])
+    outline = Outline(np.column_stack([bar.real, bar.imag]))
+    space = FreeSpace.around(outline, HandShape.from_contacts(contacts))
+    w = held[1] - held[0]
+    for off in (0.0, 0.6, -0.9, 1.1):
+        at = held[0] + off * way - complex(*space.origin)
+        wanted = Hand(at.real, at.imag, w.real, w.imag)
+        found = nearest_minimum(
+            space.pieces, space.z, wanted, 1e-6, 1e-6, space.cap, space.worst, 10**6
+        )
+        assert found.row >= 0
+        assert found.near[found.row, :4] == pytest.approx(np.array(wanted), abs=1e-9)
+        assert found.plateau.long
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_the_nearest_minimum_is_the_target_from_beside_it(seed: int) -> None:
     s = Setting(seed, [1.0, 40.0, 0.05][seed % 3])

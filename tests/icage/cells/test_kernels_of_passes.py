@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from itertools import combinations
+
 import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls
@@ -31,7 +34,7 @@ from icage.cells.kernels.min_norm import (
     min_norm_careful,
 )
 from icage.cells.kernels.near import Hand, cells_near
-from icage.cells.kernels.passes import new_room, pass_fast, pass_value
+from icage.cells.kernels.passes import _put, new_room, pass_fast, pass_value
 from tests.icage.cells.setting import Setting
 from tests.oracles.geometry import Floats
 from tests.oracles.half_planes import least_norm
@@ -301,6 +304,65 @@ def test_double_doubles_tell_what_doubles_cannot() -> None:
     assert asked(*[(*r, -1e-20, 0.0) for r in star]) == FOUND
 
 
+def exact_least_norm(rows: Floats) -> float:
+    """Over rows g_x, g_y, c, each hi and lo, in fractions; inf for none."""
+    g = [[Fraction(float(r[k])) + Fraction(float(r[k + 1])) for k in (0, 2, 4)] for r in rows]
+    tries = [(Fraction(0), Fraction(0))]
+    tries += [(x * c / (x * x + y * y), y * c / (x * x + y * y)) for x, y, c in g]
+    for (a, b, c), (d, e, f) in combinations(g, 2):
+        det = a * e - b * d
+        if det != 0:
+            tries.append(((c * e - f * b) / det, (a * f - d * c) / det))
+    tiny = Fraction(1, 10**24)
+    held = [w for w in tries if all(x * w[0] + y * w[1] >= c - tiny for x, y, c in g)]
+    return min((float(x * x + y * y) ** 0.5 for x, y in held), default=np.inf)
+
+
+def test_double_doubles_are_fractions_in_thin_wedges_and_beside_parallel_rows() -> None:
+    rng = np.random.default_rng(12)
+    corners = 0
+    for trial in range(80):
+        angle = rng.uniform(0.0, 2.0 * np.pi, 4)
+        if trial % 2:  # as good as opposite: the corner is far off, and hangs on the last digits
+            angle[1] = angle[0] + np.pi - 10.0 ** rng.uniform(-8.0, -5.0)
+        rows = np.zeros((4, 6))
+        rows[:, 0], rows[:, 2] = np.cos(angle), np.sin(angle)
+        rows[:, 4] = [0.3, -0.2, *rng.normal(size=2)] if trial % 2 else rng.normal(size=4)
+        if trial % 2 == 0:
+            rows[3, :4], rows[3, 4] = rows[0, :4], rows[0, 4] + 0.1  # the same way, further on
+        else:
+            rows[2:, 4] = -9.0
+            rows[:2, 1::2] = 1e-17 * rng.uniform(-1.0, 1.0, (2, 3))
+            rows[1, 4] = -0.3 + 10.0 ** rng.uniform(-9.0, -7.0)
+        known = exact_least_norm(rows)
+        found = min_norm_careful(rows, 4, 1e-24)
+        assert (found.status == FOUND) == (known < np.inf)
+        if known < np.inf:
+            assert np.hypot(found.w_x, found.w_y) == pytest.approx(known, rel=1e-12)
+            corners += known > rows[:, 4].max() * (1.0 + 1e-9)
+        else:
+            assert found[1:] == (0.0, 0.0)
+    assert corners > 20
+
+
+def test_a_row_without_a_direction_is_left_to_double_doubles() -> None:
+    """Where rounding is all there is of g, it is not known whether the row holds."""
+    rows = np.full((2, 5), np.nan)
+
+    def put(g: float, c: float, err: float = 1e-14) -> tuple[int, int]:
+        count, status = _put(0.6 * g, 0.8 * g, c, err, 0.5 * err, 1.0, 10.0, rows, 1)
+        return int(count), int(status)
+
+    assert put(1e-13, 0.0) == (1, UNSURE)
+    assert put(1e-13, 1e-12) == (1, UNSURE)
+    assert put(1e-13, -1e-12) == (1, UNSURE)
+    assert put(1e-13, 1e-11) == (1, INFEASIBLE)
+    assert put(1e-13, -1e-11) == (1, FOUND)  # it holds for every hand
+    assert np.isnan(rows).all()
+    assert put(0.5, 2.0) == (2, FOUND)
+    assert rows[1] == pytest.approx([0.6, 0.8, 4.0, 2e-14, 1e-14])
+
+
 def facets(s: Setting, count: int, spread: float) -> list[tuple[np.ndarray, int, int]]:
     """Cells round the target, with a finger and an edge of its piece."""
     found = []
@@ -377,6 +439,11 @@ def test_the_least_opening_on_a_facet_is_held_by_what_it_touches(seed: int) -> N
         assert (finger.real, finger.imag) == pytest.approx(tuple(spot), abs=1e-6 * s.size)
         if value < 1e-6 * s.size:
             continue
+        # a hand that is too small by rounding stands in the middle of what is left: nothing
+        shrunk = ends_on_facet(s.pieces, s.z, cell, i, slot, *(np.array([wx, wy]) * (1.0 - 1e-8)))
+        if high - low < 1e-9 * s.size:
+            assert (shrunk.x_lo, shrunk.y_lo) == pytest.approx(tuple(spot), abs=1e-5 * s.size)
+            assert (shrunk.x_hi, shrunk.y_hi) == pytest.approx(tuple(spot), abs=1e-5 * s.size)
         tau = 0.5 * (low + high)
         tight = own @ [wx, wy, tau, -1.0] < 1e-7 * s.size
         _force, miss = nnls(own[tight][:, :3].T, np.array([wx, wy, 0.0]))

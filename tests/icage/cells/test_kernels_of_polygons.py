@@ -356,6 +356,16 @@ def test_a_sandwich_holds_what_it_says(seed: int) -> None:
         assert around.contains(shapely.Polygon(corners))
 
 
+def test_a_sandwich_that_is_asked_for_little_is_the_start_in_its_piece() -> None:
+    s = Setting(1)
+    cell, start, level = cell_and_start(s)
+    inner, outer = np.full((2, CORNERS), np.nan), np.full((2, CORNERS), np.nan)
+    h, m = sandwich(s.pieces, s.z, 1, cell, level, start, 1e6 * s.size**2, inner, outer)
+    assert h == 1
+    assert inner[:, 0].tolist() == list(start)
+    assert outer[:, :m].T.tolist() == s.corners[cell[1]].tolist()
+
+
 @pytest.mark.parametrize("room", [14, 24])
 def test_a_sandwich_has_no_more_corners_than_there_is_room_for(
     room: int, monkeypatch: pytest.MonkeyPatch

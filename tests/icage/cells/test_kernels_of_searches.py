@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 import shapely
 
 from icage.cells.free_space import merge_tree, search
+from icage.cells.kernels import search as search_module
 from icage.cells.kernels.columns import (
     EDGE_FINGER,
     EDGE_FROM,
@@ -16,6 +17,7 @@ from icage.cells.kernels.columns import (
     EDGE_TO,
     RECORD_BIRTH,
     RECORD_LEVEL,
+    RECORD_NODE,
     Ending,
 )
 from icage.cells.kernels.facet import (
@@ -43,7 +45,9 @@ def test_a_cell_is_born_at_the_least_of_its_facets(seed: int) -> None:
     room = new_room()
     cells, _ = cells_near(s.pieces, s.z, s.hand, 0.05 * s.size, 10**6)
     far = s.rng.integers(0, len(s.pieces.ptr) - 1, (20, 3))  # most of them hold no hand
-    chosen = np.concatenate([cells[s.rng.permutation(len(cells))[:25]], far])
+    alike = far[:9].copy()  # fingers in one piece: the first two, the last two, all
+    alike[:3, 1], alike[3:6, 1], alike[6:] = alike[:3, 0], alike[3:6, 2], alike[6:, :1]
+    chosen = np.concatenate([cells[s.rng.permutation(len(cells))[:25]], far, alike])
     args = (s.space.cap, s.space.worst)
     table = births(s.pieces, s.z, chosen, *args)
     told = [0, 0]
@@ -136,6 +140,30 @@ def test_the_search_enters_cells_in_order_of_their_passes(seed: int) -> None:
         assert gap > enough
         again = explore(*args, np.inf, 150, float(deep.max()) * 1.5 + 1e-3)
         assert again.outcome == found.outcome
+
+
+def test_a_basin_is_as_deep_as_what_lies_behind_its_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until it is known to be deep enough the least of all its cells counts, not of its first."""
+    shallow = 0
+    for seed, share in product(range(6), (0.003, 0.03)):
+        monkeypatch.setattr(search_module, "DEEP", share)
+        s, room = Setting(seed, [1.0, 30.0][seed % 2]), new_room()
+        cells, _ = cells_near(s.pieces, s.z, s.hand, 1e-6 * s.size, 10**6)
+        args = (s.space.cap, s.space.worst)
+        start = cells[np.argmin(births(s.pieces, s.z, cells, *args).value[:, 0])]
+        born = birth(s.pieces, s.z, start, *args, room).sigma
+        found = explore(s.pieces, s.z, start, born, *args, np.inf, 150, np.inf)
+        first = found.records[:, RECORD_NODE].astype(int)
+        for record, a, b in zip(found.records[:-1], first, first[1:], strict=False):
+            born_behind = [birth(s.pieces, s.z, c, *args, room).sigma for c in found.nodes[a:b, :3]]
+            level, told = record[RECORD_LEVEL], record[RECORD_BIRTH]
+            assert told >= min(born_behind) - 1e-9 * s.size
+            if level - min(born_behind) < share * s.pieces.scale:
+                assert told == pytest.approx(min(*born_behind, level), abs=1e-9 * s.size)
+                shallow += 1
+            else:
+                assert level - told >= share * s.pieces.scale
+    assert shallow > 3
 
 
 def kruskal(low: Floats, edges: np.ndarray, value: Floats) -> dict[int, tuple[float, int]]:
