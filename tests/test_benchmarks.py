@@ -6,11 +6,8 @@ import re
 import subprocess
 import sys
 
-import numpy as np
 import pytest
-from scipy.cluster.hierarchy import DisjointSet
 
-from benchmarks.peers import grid_flood
 from experiments.environment import ROOT
 
 
@@ -55,11 +52,20 @@ def test_what_is_slower_than_its_baseline_is_counted():
     assert done.stdout.count("WORSE (by more than 25%)") == 5
 
 
+JOINS = """
+import numpy as np
+from benchmarks.peers import grid_flood
+from scipy.cluster.hierarchy import DisjointSet
+sets = DisjointSet(range(7))
+grid_flood._join(sets, np.array([[1, 1, 0], [2, 5, 2]]), np.array([[3, 0, 4], [4, 6, 4]]))
+print(sorted(sorted(one) for one in sets.subsets()))
+"""
+
+
 def test_a_flood_joins_what_is_free_in_both_slices():
     """Its levels on regular polygons are the same without: there a rigid hand escapes as soon."""
-    sets = DisjointSet(range(7))
-    grid_flood._join(sets, np.array([[1, 1, 0], [2, 5, 2]]), np.array([[3, 0, 4], [4, 6, 4]]))
-    assert sorted(sorted(one) for one in sets.subsets()) == [[0], [1, 3], [2, 4], [5, 6]]
+    done = run("-c", JOINS)
+    assert done.stdout.strip() == "[[0], [1, 3], [2, 4], [5, 6]]", done.stdout + done.stderr
 
 
 @pytest.mark.slow
