@@ -20,7 +20,7 @@ from icage.cells.kernels.columns import (
 from icage.cells.kernels.near import Hand
 from icage.cells.kernels.tree import births
 from icage.cells.largest_sigma import opens_to
-from icage.errors import GeometryError
+from icage.errors import GraspError
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, SAME_POINT, TARGET_SHIFT, TARGET_TURN
 
 _MAX_CELLS = minimum.MOST_CELLS
@@ -52,7 +52,7 @@ def find_target(
 
     Raises
     ------
-    GeometryError:
+    GraspError:
         More cells meet round the contacts than can be looked at: to leave some out could miss the
         way to close further.
     """
@@ -61,8 +61,9 @@ def find_target(
         free_space.worst, _MAX_CELLS,
     )  # fmt: skip
     if found.total > _MAX_CELLS:
-        raise GeometryError(
-            f"{found.total} cells meet round the contacts; at most {_MAX_CELLS} fit"
+        raise GraspError(
+            f"{found.total} cells meet round the contacts; at most {_MAX_CELLS} fit: too many "
+            "vertices lie within a hair of them, simplify the outline"
         )
     if found.row < 0:
         return None

@@ -9,7 +9,7 @@ import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.contact_space.exploration import Exploration, Plane, explore_from
-from icage.errors import GeometryError
+from icage.errors import GraspError
 from icage.tolerance import DEPTH_CUT, NOT_A_CAGE, PASS_ERROR, PLATEAU, SAME_POINT
 
 _MOST = 100_000
@@ -36,7 +36,7 @@ def regions_near(plane: Plane, contacts: FloatArray, reach: float) -> IntArray:
 
     Raises
     ------
-    GeometryError:
+    GraspError:
         They are more than ``_MOST``: to leave some out could miss the target.
     """
     space = plane.space
@@ -55,7 +55,10 @@ def regions_near(plane: Plane, contacts: FloatArray, reach: float) -> IntArray:
         for row in product(edges[i], edges[(i + 1) % 3], pieces[(i + 2) % 3])
     ]
     if len(rows) > _MOST:
-        raise GeometryError(f"{len(rows)} regions meet round the contacts; at most {_MOST} fit")
+        raise GraspError(
+            f"{len(rows)} regions meet round the contacts; at most {_MOST} fit: too many "
+            "vertices lie within a hair of them, simplify the outline"
+        )
     return np.array(rows, dtype=np.int64).reshape(-1, 4)
 
 

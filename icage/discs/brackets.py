@@ -43,6 +43,10 @@ _LAST_DIGIT = 1e-12
 """[1] Levels of two polygons this close are one: rounding of the same straight edges."""
 
 
+_ROUNDING = 1e-9
+"""[diameter] By no more than this is an inner level above an outer one without an error of ours."""
+
+
 @dataclass(frozen=True, slots=True)
 class ArcLocalCage:
     """One polygon that stands in for the true curve, and what was found round it."""
@@ -164,7 +168,8 @@ def _bracketed(
     best_outer = min(outer, key=lambda local_cage: local_cage.sigma_max) if outer else None
     high = best_outer.sigma_max if best_outer is not None else np.inf
     if low > high * (1.0 + 1e-9):
-        if complete:
+        # rounding is that of the coordinates, beside which the hand may be tiny
+        if complete and low - high > _ROUNDING * cage.outline.diameter:
             raise GeometryError(f"inner sigma_max {low} above outer {high}: a planner's error")
         low, high = high, low
     high = max(low, high)

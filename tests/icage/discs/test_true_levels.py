@@ -344,3 +344,32 @@ def test_what_the_polygon_joins_too_early_is_not_the_targets() -> None:
     assert cage.query(np.array([row])).verdict[0] != PlacementClass.TARGET
     for region in cage.regions("sigma_first"):
         assert region.area < 1e-4 * cage.outline.diameter**2
+
+
+def test_a_hand_that_is_tiny_beside_its_object_has_a_bracket() -> None:
+    """A corner a million hands away: coordinates are rounded, the inner level is above."""
+    far = 1799999.9999991583
+    outline = Outline(
+        [
+            (-0.5, 0),
+            (0.5, 0),
+            (0.5, 2.4),
+            (far, 2.4),
+            (1.8, 3.4),
+            (-1.8, 3.4),
+            (-1.8, 2.4),
+            (-0.5, 2.4),
+        ]
+    )
+    contacts = [
+        (0.602621878758869, 2.297378121241131), (0.11537121366031844, 3.5026218787588688),
+        (-0.602621878758869, 2.297378121241131),
+    ]  # fmt: skip
+    cage = plan(outline, contacts, 0.10262187875886895)
+    assert cage.status == "cage"
+    assert cage.sigma_max is not None
+    assert cage.sigma_max_lower is not None
+    assert cage.sigma_max_upper is not None
+    assert cage.sigma_max_lower <= cage.sigma_max <= cage.sigma_max_upper
+    # both bounds are those of coordinates of this size, not better than a billionth of them
+    assert cage.sigma_max_upper - cage.sigma_max_lower < 1e-9 * outline.diameter
