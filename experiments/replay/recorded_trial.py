@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, ParamSpec, TypeVar, cast
 
-import numpy as np
 import shapely
 
 from experiments.io.arrow_table import Table
@@ -24,7 +23,7 @@ from experiments.io.versions import versions
 from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, GraspMinimum
 from icage.cells.regions import FingerRegion
-from icage.checks import a_number
+from icage.checks import a_count, a_number, an_instance
 from icage.errors import InputError
 from icage.formats.json_text import points
 from icage.hand import HandShape, Placement
@@ -108,7 +107,7 @@ class RecordedTrial:
     @property
     def grasps(self) -> tuple[GraspMinimum, ...]:
         """The grasps of the recorded plan, the target first."""
-        sigma_0 = float(self.run["plan"]["sigma_0"])
+        sigma_0 = a_number(self.run["plan"]["sigma_0"], "sigma_0")
         return tuple(_grasp(grasp, sigma_0) for grasp in self.run["plan"]["grasps"])
 
     @property
@@ -182,8 +181,9 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
         if not trial.grasps:
             raise RecordingError(f"{str(folder / JSON)!r} is not a replay: a run without grasps")
         _ = trial.start, a_number(run["plan"]["finger_radius"], "finger_radius"), trial.unit
+        _ = recorded_cage(trial), recorded_regions(trial)
         return trial
-    except (KeyError, IndexError, TypeError, ValueError) as error:
+    except (KeyError, IndexError, TypeError, ValueError, shapely.errors.ShapelyError) as error:
         raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error
 
 
@@ -227,12 +227,12 @@ def recorded_cage(trial: RecordedTrial) -> Cage:
         outline=trial.outline,
         hand=trial.hand,
         finger_radius=plan["finger_radius"],
-        contacts=np.array(plan["contacts"]),
+        contacts=_contacts(plan["contacts"]),
         status=CageStatus(plan["verdict"]),
         why=plan.get("why"),
-        sigma_0=plan["sigma_0"],
-        sigma_first=plan["sigma_first"],
-        sigma_max=plan["sigma_max"],
+        sigma_0=a_number(plan["sigma_0"], "sigma_0"),
+        sigma_first=_level(plan, "sigma_first"),
+        sigma_max=_level(plan, "sigma_max"),
         grasps=trial.grasps,
     )
 
@@ -240,13 +240,14 @@ def recorded_cage(trial: RecordedTrial) -> Cage:
 def recorded_regions(trial: RecordedTrial) -> tuple[FingerRegion, ...]:
     """The caging regions kept with the plan."""
     plan = trial.run["plan"]
+    highest = _level(plan, "sigma_max")
     return tuple(
         FingerRegion(
-            region["finger"],
-            region["level"],
-            math.inf if plan["sigma_max"] is None else plan["sigma_max"],
+            a_count(region["finger"], "finger of a region"),
+            an_instance(region["level"], str, "level of a region"),
+            math.inf if highest is None else highest,
             region["bound"],
-            region["area_gap"],
+            a_number(region["area_gap"], "area_gap of a region"),
             shapely.MultiPolygon([(p["outer"], p["holes"]) for p in region["polygons"]]),
         )
         for region in plan["regions"]
@@ -259,14 +260,18 @@ def _grasp(grasp: Any, sigma_0: float) -> GraspMinimum:
     grasp = cast("dict[str, Any]", grasp)
     ends = grasp.get("plateau")
     return GraspMinimum(
-        id=grasp["id"],
-        target=grasp["target"],
-        sigma=grasp["sigma_0"],
+        id=a_count(grasp["id"], "id of a grasp", 0),
+        target=an_instance(grasp["target"], bool, "target of a grasp"),
+        sigma=a_number(grasp["sigma_0"], "sigma_0 of a grasp"),
         contacts=_contacts(grasp["contacts"]),
         plateau=None if ends is None else (_contacts(ends[0]), _contacts(ends[1])),
-        free_fingers=tuple(grasp["free_fingers"]),
+        free_fingers=tuple(a_count(k, "a free finger") for k in grasp["free_fingers"]),
         joined_at=sigma_0,
     )
+
+
+def _level(plan: dict[str, Any], name: str) -> float | None:
+    return None if plan[name] is None else a_number(plan[name], name)
 
 
 def _contacts(rows: Any) -> FloatArray:

@@ -149,6 +149,34 @@ def test_a_grasp_or_a_plateau_that_is_none_is_an_input_error(
         assert "is not a replay" in told or "contacts" in told, wrong
 
 
+@pytest.mark.parametrize("key", ["id", "target", "sigma_0", "contacts", "free_fingers"])
+@pytest.mark.parametrize("value", [{}, [[]], "one", None, {"id": 1}, [7.5], True, 1e400])
+def test_whatever_a_grasp_has_is_read_or_refused(
+    folder: Path, tmp_path: Path, key: str, value: object, capsys: Any
+) -> None:
+    """None of it gets as far as the judge of the closing."""
+    runs = json.loads((folder / "replay.json").read_text())["runs"]
+    runs[0]["plan"]["grasps"][0][key] = value
+    other = copied(folder, tmp_path / "other", runs=runs)
+    ended = here(capsys, "replay-trial", str(other), "0")
+    if (key, value) in (("target", True), ("free_fingers", {})):
+        assert ended.code in (0, 1)
+    else:
+        assert ended.error_line()
+
+
+@pytest.mark.parametrize("key", ["contacts", "verdict", "regions", "sigma_max", "hand"])
+@pytest.mark.parametrize("value", [{}, [[]], "one", {"id": 1}, [7.5], [{"polygons": 1}]])
+def test_whatever_a_film_draws_is_read_or_refused(
+    folder: Path, tmp_path: Path, key: str, value: object, capsys: Any
+) -> None:
+    runs = json.loads((folder / "replay.json").read_text())["runs"]
+    runs[0]["plan"][key] = value
+    other = copied(folder, tmp_path / "other", runs=runs)
+    ended = here(capsys, "replay-trial", str(other), "0")
+    assert ended.code in (0, 1) if (key, value) == ("regions", {}) else ended.error_line()
+
+
 @pytest.mark.parametrize("unit", [None, 7, []])
 def test_a_run_without_a_unit_is_an_input_error(
     folder: Path, tmp_path: Path, unit: object, capsys: Any

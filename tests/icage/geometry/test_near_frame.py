@@ -167,11 +167,13 @@ def assert_close(a: Any, b: Any, within: float, at: str = "") -> None:
 
 def test_grasps_of_discs_on_an_object_of_few_floats() -> None:
     """So far off that its grown polygon has more corners than there are floats between."""
-    hexagon = np.array([[0, 0], [1, -1], [4, 3], [6, 2], [4, 5], [0, 4]]) * 2.0**-39
+    triangle, radius = np.array([[0, 0], [1, -1], [4, 3]]) * 2.0**-39, 5e-13
     hand = HandShape.from_angles_deg(60.0, 120.0)
-    here = grasps_of_hand(Outline(hexagon), hand, 1e-12)
-    there = grasps_of_hand(Outline(hexagon + 2.0**13), hand, 1e-12)
-    assert len(here) == len(there) > 0
+    here = grasps_of_hand(Outline(triangle), hand, radius)
+    far = Outline(triangle + 2.0**13)
+    with pytest.raises(GeometryError):
+        offsets(far, radius, 8)
+    assert len(here) == len(grasps_of_hand(far, hand, radius)) > 0
 
 
 def test_no_failure_of_a_union_leaves_the_planner(monkeypatch: pytest.MonkeyPatch) -> None:
