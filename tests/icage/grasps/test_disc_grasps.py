@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,7 @@ def test_contacts_on_chords_move_onto_the_curve(slot: tuple[Outline, list[np.nda
             assert np.abs(after - before).max() < 0.01 * 2.0
 
 
+@cache
 def hook() -> tuple[Outline, HandShape, list[np.ndarray]]:
     outline = read_object(INPUTS / "hook_bracket.json").outline
     hand = HandShape.from_angles_deg(60.0, 120.0)
