@@ -22,7 +22,7 @@ from icage.cells.minima import first_joining
 from icage.cells.regions import caging_regions
 from icage.contact_space.method import CONTACT_SPACE
 from icage.discs.offsets import offsets
-from icage.errors import GeometryError
+from icage.errors import GeometryError, GraspError
 from icage.formats.case_json import read_case
 from icage.formats.plan_json import plan_document
 from icage.geometry.near_frame import NearFrame
@@ -203,10 +203,10 @@ def test_cells_round_a_target_are_never_cut_short(monkeypatch: pytest.MonkeyPatc
     vertices, contacts, _ = data_of(CASES / "L_best.json")
     plan(Outline(vertices), contacts)
     monkeypatch.setattr(icage.cells.target, "_MAX_CELLS", 0)
-    with pytest.raises(GeometryError, match="cells meet"):
+    with pytest.raises(GraspError, match="cells meet"):
         plan(Outline(vertices), contacts)
     monkeypatch.setattr(icage.contact_space.target, "_MOST", 0)
-    with pytest.raises(GeometryError, match="regions meet"):
+    with pytest.raises(GraspError, match="regions meet"):
         plan(Outline(vertices), contacts, method=CONTACT_SPACE)
 
 
