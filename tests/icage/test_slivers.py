@@ -18,7 +18,7 @@ from icage.cells.kernels.largest import _holds as holds  # pyright: ignore[repor
 from icage.cells.kernels.plateau import translations
 from icage.contact_space.exploration import Plane
 from icage.geometry.exterior import Pieces
-from icage.geometry.tips import SHARP, sharp_tips
+from icage.geometry.tips import SHARP, Tips, sharp_tips
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
@@ -139,9 +139,7 @@ def test_regions_of_slivers_keep_the_third_finger_in_them(angle: float, spin: fl
 
 
 def test_a_point_beyond_the_tip_of_a_sliver_is_not_in_it() -> None:
-    outline, contacts = spiked(2e-8, 2.9)
-    pieces = FreeSpace.around(outline, HandShape.from_contacts(contacts)).pieces
-    tips = sharp_tips(pieces)
+    outline, pieces, tips = spiked_pieces(2e-8)
     give, seen = 1e-9 * outline.diameter, 0
     for k, shape in enumerate(shapes_of(pieces)):
         for tip in range(tips.tip_ptr[k], tips.tip_ptr[k + 1]):
@@ -156,9 +154,7 @@ def test_a_point_beyond_the_tip_of_a_sliver_is_not_in_it() -> None:
 
 
 def test_tips_are_where_a_piece_is_sharp() -> None:
-    outline, contacts = spiked(1e-3, 2.9)
-    pieces = FreeSpace.around(outline, HandShape.from_contacts(contacts)).pieces
-    tips = sharp_tips(pieces)
+    _, pieces, tips = spiked_pieces(1e-3)
     for k, shape in enumerate(shapes_of(pieces)):
         ring = shapely.get_coordinates(shape.exterior)[:-1]
         ahead, back = np.roll(ring, -1, axis=0) - ring, np.roll(ring, 1, axis=0) - ring
@@ -170,6 +166,13 @@ def test_tips_are_where_a_piece_is_sharp() -> None:
             [tips.tip_nx, tips.tip_ny]
         )[a:b]
         assert (inside.sum(axis=2) >= 0.0).all()
+
+
+def spiked_pieces(angle: float) -> tuple[Outline, Pieces, Tips]:
+    """The object with its needle, the pieces round it, and their tips."""
+    outline, contacts = spiked(angle, 2.9)
+    pieces = FreeSpace.around(outline, HandShape.from_contacts(contacts)).pieces
+    return outline, pieces, sharp_tips(pieces)
 
 
 def shapes_of(pieces: Pieces) -> list[shapely.Polygon]:
