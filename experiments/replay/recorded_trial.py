@@ -95,9 +95,7 @@ class RecordedTrial:
     @property
     def unit(self) -> str:
         """Of lengths, as the case has it."""
-        if not isinstance(self.run["unit"], str):
-            raise TypeError(f"the unit is {type(self.run['unit']).__name__}")
-        return self.run["unit"]
+        return an_instance(self.run["unit"], str, "unit")
 
     @property
     def scene(self) -> Scene:
@@ -183,6 +181,10 @@ def read_trial(folder: Path, index: int) -> RecordedTrial:
         _ = trial.start, a_number(run["plan"]["finger_radius"], "finger_radius"), trial.unit
         _ = recorded_cage(trial), recorded_regions(trial)
         return trial
+    except RecordingError:
+        raise
+    except InputError as error:
+        raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error}") from error
     except (KeyError, IndexError, TypeError, ValueError, shapely.errors.ShapelyError) as error:
         raise RecordingError(f"{str(folder / JSON)!r} is not a replay: {error!r}") from error
 
@@ -255,9 +257,7 @@ def recorded_regions(trial: RecordedTrial) -> tuple[FingerRegion, ...]:
 
 
 def _grasp(grasp: Any, sigma_0: float) -> GraspMinimum:
-    if not isinstance(grasp, dict):
-        raise TypeError(f"a grasp is {type(grasp).__name__}")
-    grasp = cast("dict[str, Any]", grasp)
+    grasp = cast("dict[str, Any]", an_instance(grasp, dict, "a grasp"))
     ends = grasp.get("plateau")
     return GraspMinimum(
         id=a_count(grasp["id"], "id of a grasp", 0),
