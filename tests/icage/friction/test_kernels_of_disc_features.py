@@ -20,11 +20,9 @@ from icage.friction.kernels.disc_hands import (
     slack_of,
 )
 from icage.friction.kernels.disc_jams import _room
-from icage.geometry.exterior import exterior_pieces
-from icage.hand import HandShape
-from icage.outline import Outline
 from tests.icage.friction.drawn_discs import RADIUS, contacts
 from tests.icage.friction.flat_polygons import ROOM, Flat, fingers_of
+from tests.icage.friction.square_pieces import piece_of, square_pieces
 from tests.icage.friction.test_cones_of_forces import Z
 from tests.oracles.geometry import Floats
 
@@ -105,19 +103,6 @@ def test_a_finger_is_held_off_an_arc_in_a_range_of_directions() -> None:
                 assert flat.holds(polygon[:n], hand) == (value > 0.0)
 
 
-def square_pieces() -> tuple:
-    outline = Outline(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
-    hand = HandShape.from_contacts(np.array([[0.5, 0.0], [1.0, 0.5], [0.5, 1.0]]))
-    return exterior_pieces(outline, hand)
-
-
-def _piece_of(pieces: tuple, at: complex) -> int:
-    """The piece that a point is deepest in."""
-    x, y, slots = np.array(pieces.x), np.array(pieces.y), np.array(pieces.slot_vertex)
-    gap = pieces.normal_x * (at.real - x[slots]) + pieces.normal_y * (at.imag - y[slots])
-    return int(np.argmax(np.minimum.reduceat(gap, pieces.ptr[:-1])))
-
-
 def test_hands_of_two_discs_are_in_their_pieces_and_on_their_features() -> None:
     """Two fingers on opposite sides of the square, the third in its piece, or on a side too."""
     pieces, origin = square_pieces()
@@ -141,7 +126,7 @@ def test_hands_of_two_discs_are_in_their_pieces_and_on_their_features() -> None:
         two = (q[0] + share[:, 1] * q[2]) + 1j * (q[1] + share[:, 1] * q[3])
         w = (two - one) / (z[1] - z[0])
         at = (one - w * z[0])[:, None] + w[:, None] * z
-        cell = np.array([_piece_of(pieces, p) for p in at[0]])
+        cell = np.array([piece_of(pieces, p) for p in at[0]])
         if trial % 2:
             cell[2] = rng.integers(0, len(pieces.ptr) - 1)
         state = np.full((3, COLUMNS), -1.0)

@@ -12,8 +12,8 @@ from icage.friction.kernels.far import Near
 from icage.friction.kernels.goal import Goal
 from icage.friction.kernels.jams import _hands_on, _sizes_fit, _within, least_jam
 from tests.icage.friction.flat_polygons import ROOM, Flat, fingers_of
+from tests.icage.friction.square_pieces import piece_of, square_pieces
 from tests.icage.friction.test_cones_of_forces import Z, balances
-from tests.icage.friction.test_disc_jams_by_sampling import _piece_of, square_pieces
 from tests.oracles.geometry import Floats
 
 pytestmark = pytest.mark.usefixtures("plain")
@@ -122,7 +122,7 @@ def test_hands_on_features_with_the_others_in_their_pieces(seed: int) -> None:
     chosen = s.rng.permutation(4)[: len(finger)]
     hands = s.hands(chosen[0], chosen[1], finger[0], finger[1], 300)
     at = fingers_of(hands, Z)
-    cell = np.array([_piece_of(s.pieces, p) for p in at[0]])
+    cell = np.array([piece_of(s.pieces, p) for p in at[0]])
     thick = 0.02
     which = contacts_of(s.sides, np.zeros((4, 4)))
     polygon = np.full((ROOM, 4), np.nan)
@@ -159,7 +159,7 @@ def test_no_hand_that_jams_is_smaller_or_nearer_than_the_least(seed: int, toward
     i, j = np.sort(s.rng.permutation(3)[:2])
     hands = s.hands(first, second, i, j, 400)
     at = fingers_of(hands, Z)
-    cells = np.array([[_piece_of(s.pieces, p) for p in row] for row in at[:2]])
+    cells = np.array([[piece_of(s.pieces, p) for p in row] for row in at[:2]])
     count = len(s.pieces.ptr) - 1
     which = Contacts(
         ptr=2 * np.arange(count + 1), place=np.tile(s.sides[[first, second]], (count, 1)),
