@@ -158,6 +158,13 @@ def is_local_minimum(free_space: FreeSpace, here: Configuration, sigma: float) -
     )
 
 
+def is_strict_minimum(free_space: FreeSpace, here: Configuration, sigma: float) -> bool:
+    """Whether it is such a minimum and no ``plateau_through`` it leads away."""
+    return minimum.is_strict_minimum(
+        free_space.pieces, free_space.z, _hand(here), sigma, free_space.cap, free_space.worst
+    )
+
+
 def _has_depth(around: Search, sigma: float) -> bool:
     """Whether a hand of this least sigma must open by more than the depth cut to close further.
 

@@ -15,7 +15,7 @@ from icage.cells.free_space import Configuration, FreeSpace
 from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BIRTH_WY, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.search import TIE
 from icage.cells.kernels.tree import lowest_cells
-from icage.cells.target import is_local_minimum, plateau_through
+from icage.cells.target import is_strict_minimum
 from icage.discs.offsets import offsets
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
@@ -73,9 +73,7 @@ def grasps_of_hand(outline: Outline, hand: HandShape, radius: float = 0.0) -> li
         sigma = float(low[k, BIRTH_SIGMA])
         if _known(free_space, here, sigma, found):
             continue
-        if is_local_minimum(free_space, here, sigma) and not plateau_through(
-            free_space, here, sigma
-        ):
+        if is_strict_minimum(free_space, here, sigma):
             found.append((sigma, here))
     return [frame.back(free_space.contacts(here)) for _, here in found]
 

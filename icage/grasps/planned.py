@@ -34,6 +34,8 @@ _OF_AN_IDEA = 4
 _APART = 3e-4
 """[diameter] ... further from each other than this."""
 
+_SAME = 1e-7
+"""[diameter] Solved grasps of one hand whose fingers are this near are one."""
 
 WEDGED: Final = "a wedge: only an exact fit holds it"
 """Why a cage is not ranked of which nothing is guaranteed."""
@@ -142,13 +144,35 @@ def planned_grasps_of_hand(
     candidates: Iterable[FloatArray],
     wanted: Wanted,
 ) -> PlannedGrasps:
-    """All candidates, (3, 2) contacts, that are cages of this very hand."""
-    answers = [
-        (contacts, planned_or_why(outline, radius, contacts, hand)) for contacts in candidates
-    ]
-    cages = [(score(cage, wanted), cage) for _, cage in answers if isinstance(cage, Cage)]
-    failures = [Failure(contacts, why) for contacts, why in answers if isinstance(why, str)]
-    return _ordered(cages, [0] * len(cages), failures)
+    """All candidates, (3, 2) contacts, that are cages of this very hand.
+
+    Chords that stand for one arc have grasps of their own, which are one on the true curve: planned
+    once, the others are told as alike.
+    """
+    places: list[FloatArray] = []
+    alike: list[int] = []
+    failures: list[Failure] = []
+    for contacts in candidates:
+        held = _held_or_why(outline, radius, contacts, hand)
+        if isinstance(held, str):
+            failures.append(Failure(contacts, held))
+            continue
+        off = [float(np.abs(held - other).max()) for other in places]
+        if off and min(off) <= _SAME * outline.diameter:
+            alike[int(np.argmin(off))] += 1
+        else:
+            places.append(held)
+            alike.append(0)
+    cages: list[tuple[float, Cage]] = []
+    kept: list[int] = []
+    for held, more in zip(places, alike, strict=True):
+        cage = _planned_or_why(outline, radius, held)
+        if isinstance(cage, str):
+            failures += [Failure(held, cage)] * (1 + more)
+        else:
+            cages.append((score(cage, wanted), cage))
+            kept.append(more)
+    return _ordered(cages, kept, failures)
 
 
 def _ordered(
@@ -167,13 +191,23 @@ def planned_or_why(
     outline: Outline, radius: float, contacts: FloatArray, hand: HandShape | None = None
 ) -> Cage | str:
     """The cage of a candidate, or why there is none: one that fails is no reason to stop."""
+    held = _held_or_why(outline, radius, contacts, hand)
+    return held if isinstance(held, str) else _planned_or_why(outline, radius, held)
+
+
+def _held_or_why(
+    outline: Outline, radius: float, contacts: FloatArray, hand: HandShape | None
+) -> FloatArray | str:
+    """Where the fingers of a candidate stand on the true curve, or why they cannot."""
     try:
-        if radius > 0.0:
-            contacts = grasp_on_curve(outline, radius, contacts, hand)
+        return grasp_on_curve(outline, radius, contacts, hand) if radius > 0.0 else contacts
     except GraspError as error:
         return str(error)
     except HandError:
         return "the fingers come to stand on one line"
+
+
+def _planned_or_why(outline: Outline, radius: float, contacts: FloatArray) -> Cage | str:
     try:
         cage = plan(outline, contacts, radius)
     except GraspError:

@@ -28,7 +28,7 @@ from icage.cells.kernels.columns import (
 )
 from icage.cells.kernels.facet import ends_on_facet
 from icage.cells.kernels.near import Hand, cells_near
-from icage.cells.kernels.plateau import Plateau, plateau_through, translations
+from icage.cells.kernels.plateau import Plateau, plateau_through, slid_further, translations
 from icage.cells.kernels.tree import births
 from icage.kernels.compiled import compiled
 from icage.kernels.storage import stable_order
@@ -118,15 +118,37 @@ def _slid_to(pieces, z, cell, hx, hy, wx, wy, to):
 
 
 @compiled
-def is_local_minimum(pieces, z, here, sigma, cap, worst):
-    """Whether no cell round the configuration goes deeper by more than the depth cut."""
+def _least_round(pieces, z, here, sigma, cap, worst):
+    """The cells (n, fingers) round a configuration and their least sigma (n,).
+
+    And whether none goes deeper by more than the depth cut, nor are there too many to be looked at.
+    """
     size = pieces.diameter
     cells, total = cells_near(pieces, z, here, SAME_POINT * size, MOST_CELLS)
-    low = births(pieces, z, cells, cap, worst).value
+    low = births(pieces, z, cells, cap, worst).value[:, BIRTH_SIGMA]
     for k in range(len(low)):
-        if low[k, BIRTH_SIGMA] < sigma - DEPTH_CUT * size:
-            return False
-    return total <= MOST_CELLS
+        if low[k] < sigma - DEPTH_CUT * size:
+            return cells, low, False
+    return cells, low, total <= MOST_CELLS
+
+
+@compiled
+def is_local_minimum(pieces, z, here, sigma, cap, worst):
+    """Whether no cell round the configuration goes deeper by more than the depth cut."""
+    return _least_round(pieces, z, here, sigma, cap, worst)[2]
+
+
+@compiled
+def is_strict_minimum(pieces, z, here, sigma, cap, worst):
+    """Whether besides no translation at constant sigma leads away: ``plateau_through`` is a point.
+
+    Were there a plateau, already its first step would lead further off.
+    """
+    cells, low, is_minimum = _least_round(pieces, z, here, sigma, cap, worst)
+    if not is_minimum:
+        return False
+    at = np.array([here.d_x, here.d_y])
+    return not slid_further(pieces, z, here, at, at, cells, low, sigma)[2]
 
 
 @compiled

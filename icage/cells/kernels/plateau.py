@@ -111,6 +111,30 @@ def _is_further(hx, hy, ox, oy, bx, by, dx, dy, reach):
 
 
 @compiled
+def slid_further(pieces, z, here, other, best, cells, low, sigma):
+    """The end of a plateau through a minimum ``here`` that lies further off than the ``best`` yet.
+
+    Looked for in ``cells`` (n, fingers) that meet at the best one, of least sigma ``low`` (n,), on
+    the side away from the ``other`` end; all ends are d (2,). And whether there is one.
+    """
+    size = pieces.diameter
+    bx, by = best
+    moved = False
+    for k in range(len(cells)):
+        if abs(low[k] - sigma) > DEPTH_CUT * size:
+            continue
+        corners = translations(pieces, z, cells[k], here.w_x, here.w_y)
+        for c in range(len(corners)):
+            if _is_further(
+                here.d_x, here.d_y, other[0], other[1], bx, by,
+                corners[c, 0], corners[c, 1], PLATEAU * size,
+            ):  # fmt: skip
+                bx, by = corners[c, 0], corners[c, 1]
+                moved = True
+    return bx, by, moved
+
+
+@compiled
 def plateau_through(pieces, z, here, sigma, cap, worst, most):
     """Ends of the translations at constant sigma through a minimum (opposing parallel edges).
 
@@ -122,22 +146,12 @@ def plateau_through(pieces, z, here, sigma, cap, worst, most):
     ends[:, 0], ends[:, 1] = here.d_x, here.d_y
     for side in range(2):
         for _ in range(_STEPS * (len(pieces.ptr) - 1)):
-            bx, by = ends[side, 0], ends[side, 1]
-            at = Hand(bx, by, here.w_x, here.w_y)
+            at = Hand(ends[side, 0], ends[side, 1], here.w_x, here.w_y)
             cells, _ = cells_near(pieces, z, at, SAME_POINT * size, most)
-            low = births(pieces, z, cells, cap, worst).value
-            moved = False
-            for k in range(len(cells)):
-                if abs(low[k, BIRTH_SIGMA] - sigma) > DEPTH_CUT * size:
-                    continue
-                corners = translations(pieces, z, cells[k], here.w_x, here.w_y)
-                for c in range(len(corners)):
-                    if _is_further(
-                        here.d_x, here.d_y, ends[1 - side, 0], ends[1 - side, 1], bx, by,
-                        corners[c, 0], corners[c, 1], PLATEAU * size,
-                    ):  # fmt: skip
-                        bx, by = corners[c, 0], corners[c, 1]
-                        moved = True
+            low = births(pieces, z, cells, cap, worst).value[:, BIRTH_SIGMA]
+            bx, by, moved = slid_further(
+                pieces, z, here, ends[1 - side], ends[side], cells, low, sigma
+            )
             if not moved:
                 break
             ends[side, 0], ends[side, 1] = bx, by

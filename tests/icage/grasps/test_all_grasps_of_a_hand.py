@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from itertools import combinations
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from icage.cells.free_space import Configuration, FreeSpace
+from icage.cells.kernels.tree import lowest_cells
+from icage.cells.target import is_local_minimum, is_strict_minimum, plateau_through
 from icage.discs.offsets import offsets
 from icage.errors import InputError
 from icage.grasps.of_one_hand import grasps_of_hand
+from icage.grasps.planned import planned_grasps_of_hand
+from icage.grasps.wanted import Wanted
 from icage.hand import HandShape
 from icage.outline import Outline
 from icage.planner import plan
+from icage.tolerance import DEPTH_CUT
 from tests.icage.grasps.small_outlines import RADIUS, SMALL, found
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.minima import all_minima
@@ -84,6 +93,43 @@ def test_a_turned_outline_has_the_turned_grasps(name: str) -> None:
     other = grasps_of_hand(turned, hand)
     within = 1e-8 * turned.diameter
     assert unmatched(one, other, within) == unmatched(other, one, within) == []
+
+
+@pytest.mark.parametrize("phi", [(60.0, 120.0), (100.0, 110.0)])
+def test_a_minimum_is_strict_where_no_plateau_goes_through_it(phi: tuple[float, float]) -> None:
+    """Chords of a square's arcs are parallel in pairs: most least points of cells can slide."""
+    hand = HandShape.from_angles_deg(*phi)
+    square = Outline([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    space = FreeSpace.around(offsets(square, 0.14, 4).inner, hand)
+    size = space.pieces.diameter
+    lowest = lowest_cells(space.pieces, space.z, space.cap, space.worst, 1e-9, DEPTH_CUT * size)
+    seen = Counter[bool]()
+    for k in range(len(lowest.cells)):
+        sigma, wx, wy = lowest.birth[k].tolist()
+        ends = space.on_edge(lowest.cells[k], *lowest.birth_at[k].tolist(), wx, wy)
+        here = Configuration(0.5 * (ends[0].d + ends[1].d), complex(wx, wy))
+        strict = is_strict_minimum(space, here, sigma)
+        seen[strict] += 1
+        assert strict == (
+            is_local_minimum(space, here, sigma) and plateau_through(space, here, sigma) is None
+        )
+    assert seen[False] > 3
+    assert seen[True] > 5 or phi[0] > 90.0
+
+
+def test_grasps_of_discs_at_one_place_are_told_once() -> None:
+    """Next to each grasp on a square's arcs several chords have one of their own."""
+    hand = HandShape.from_angles_deg(60.0, 120.0)
+    square = Outline([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    candidates = grasps_of_hand(square, hand, 0.14)
+    found = planned_grasps_of_hand(square, 0.14, hand, candidates, Wanted())
+    assert len(found.cages) == 12
+    assert sum(found.alike) + len(found.cages) + len(found.failures) == len(candidates)
+    assert min(found.alike) > 0
+    for one, other in combinations(found.cages, 2):
+        assert np.abs(one.contacts - other.contacts).max() > 1e-3
+    turned = [rotated(cage.contacts, 0.5 * np.pi, (1.0, 0.0)) for cage in found.cages]
+    assert unmatched(turned, [cage.contacts for cage in found.cages], 1e-8) == []
 
 
 def test_too_many_pieces_are_refused() -> None:
