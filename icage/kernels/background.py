@@ -22,7 +22,7 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING, Any, Final
 
-from icage.kernels.digest import kernel_digest
+from icage.kernels.digest import kernel_digest, sources_changed
 
 if TYPE_CHECKING:
     import subprocess
@@ -186,7 +186,7 @@ def _read(file: Path) -> tuple[frozenset[str], bool]:
 def write_list(ready: list[str], complete: bool) -> None:
     """Say which kernels are ready; the file appears whole."""
     folder = _folder()
-    if folder is None:
+    if folder is None or sources_changed():  # nothing was kept then
         return
     file = folder / _file_name()
     part = file.with_suffix(f".{os.getpid()}")

@@ -22,6 +22,7 @@ import numpy as np
 
 from icage.kernels import background, claims
 from icage.kernels.compiling import announce
+from icage.kernels.digest import kernel_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -45,6 +46,8 @@ _LOOK_EVERY: Final = 32
 
 _NEXT_LOOK: Final = 0.1
 """[s] Between two looks for the machine code that another process makes."""
+
+kernel_digest()  # taken now, when the kernels are imported: of the sources that this process runs
 
 
 class _GoesOver(BaseException):

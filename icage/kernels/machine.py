@@ -20,7 +20,7 @@ from numba.core.event import Event, Listener, register
 from numba.core.runtime.nrt import rtsys
 
 from icage.kernels.compiling import announce
-from icage.kernels.digest import kernel_digest
+from icage.kernels.digest import kernel_digest, sources_changed
 
 TOOLS: Final = f"numba{numba.__version__}-llvmlite{llvmlite.__version__}"
 """What makes the machine code."""
@@ -65,6 +65,7 @@ def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **opti
         source_stamp=kernel_digest(),
     )
     cache.load_overload = _without_what_compiles(cache)
+    cache.save_overload = _of_these_sources(cache.save_overload)
     return _kept(dispatcher)
 
 
@@ -98,6 +99,19 @@ class _Watch(Listener):
 
     def on_end(self, event: Event) -> None:
         pass
+
+
+def _of_these_sources(save: Callable[[Any, Any], None]) -> Callable[[Any, Any], None]:
+    """Keeps machine code only while the sources are those of the stamp.
+
+    A process that runs on across an update would leave that of the old ones under the new stamp.
+    """
+
+    def save_if_so(signature: Any, machine_code: Any) -> None:
+        if not sources_changed():
+            save(signature, machine_code)
+
+    return save_if_so
 
 
 def _without_what_compiles(cache: Any) -> Callable[[Any, Any], Any]:

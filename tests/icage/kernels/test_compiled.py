@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from icage.cells.kernels.search import explore
+from icage.kernels import background
 from icage.kernels import compiled as module
 from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.digest import kernel_digest
@@ -103,6 +105,44 @@ def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) ->
     assert [told(version) for version in ("A", "A", "B", "A", "B")] == [1, 0, 1, 0, 0]
     names = [file.name for file in (tmp_path / "cache").glob("*/*.nbi")]
     assert sorted(name[-6:] for name in names) == ["eA.nbi", "eB.nbi"]
+
+
+ACROSS_AN_UPDATE = """
+import sys
+from pathlib import Path
+import numpy as np
+import icage
+from icage.kernels.compiled import machine_code_at_once
+from icage.kernels.digest import kernel_digest, sources_changed
+from icage.kernels.straight import corners
+before = kernel_digest()
+if sys.argv[1] == "update":
+    inner = Path(icage.__file__).parent / "kernels" / "union_find.py"
+    inner.write_text(inner.read_text() + "\\n# new\\n")
+assert sources_changed() == (sys.argv[1] == "update")
+assert kernel_digest() == before  # of what this process runs
+machine_code_at_once()
+x, y = np.array([0.0, 1.0, 2.0, 2.0]), np.array([0.0, 0.0, 0.0, 1.0])
+print(corners(x, y, 0, 1e-9).tolist())
+"""
+
+
+def test_a_process_that_runs_across_an_update_keeps_no_machine_code(tmp_path: Path) -> None:
+    """It would be that of the old sources under the stamp of the new ones."""
+    root = Path(__file__).parents[3]
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(root / "icage", tmp_path / "icage", ignore=ignored)
+    for what, kept in (("update", False), ("no", True)):
+        cache = tmp_path / what
+        cache.mkdir()
+        own = {"PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(cache), background.SWITCH: "0"}
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", ACROSS_AN_UPDATE, what], check=True, capture_output=True,
+            text=True, cwd=tmp_path, env={**os.environ, **own},
+        )  # fmt: skip
+        assert done.stdout == "[True, False, True, True]\n"
+        assert any(cache.glob("*/straight.corners*.nbc")) == kept
+        assert any(cache.glob("icage-kernels-*.json")) == kept
 
 
 def test_no_place_for_a_cache_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
