@@ -22,7 +22,7 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING, Any, Final
 
-from icage.kernels.digest import kernel_digest, sources_changed
+from icage.kernels.digest import kernel_sources
 
 if TYPE_CHECKING:
     import subprocess
@@ -176,7 +176,7 @@ def _look() -> None:
 def _read(file: Path) -> tuple[frozenset[str], bool]:
     try:
         found: Any = json.loads(file.read_bytes())
-        if found["digest"] == kernel_digest():
+        if found["digest"] == kernel_sources().digest:
             return frozenset(found["ready"]), bool(found["complete"])
     except (OSError, ValueError, KeyError, TypeError):
         pass
@@ -186,11 +186,11 @@ def _read(file: Path) -> tuple[frozenset[str], bool]:
 def write_list(ready: list[str], complete: bool) -> None:
     """Say which kernels are ready; the file appears whole."""
     folder = _folder()
-    if folder is None or sources_changed():  # nothing was kept then
+    if folder is None or kernel_sources().changed():  # nothing was kept then
         return
     file = folder / _file_name()
     part = file.with_suffix(f".{os.getpid()}")
-    content = {"digest": kernel_digest(), "ready": sorted(ready), "complete": complete}
+    content = {"digest": kernel_sources().digest, "ready": sorted(ready), "complete": complete}
     part.write_text(json.dumps(content), encoding="utf-8")
     part.replace(file)
 

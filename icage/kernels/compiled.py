@@ -22,7 +22,7 @@ import numpy as np
 
 from icage.kernels import background, claims
 from icage.kernels.compiling import announce
-from icage.kernels.digest import kernel_digest
+from icage.kernels.digest import kernel_sources
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -47,7 +47,7 @@ _LOOK_EVERY: Final = 32
 _NEXT_LOOK: Final = 0.1
 """[s] Between two looks for the machine code that another process makes."""
 
-kernel_digest()  # taken now, when the kernels are imported: of the sources that this process runs
+kernel_sources()  # taken now, when the kernels are imported: of the sources that this process runs
 
 
 class _GoesOver(BaseException):

@@ -1,6 +1,6 @@
-"""What all kernels say together: the stamp of their machine code.
+"""What compiled functions that call one another say together: the stamp of their machine code.
 
-It is that of the sources as they were when the first kernel was imported. Sources may change while
+It is that of the sources as they were when the first of them was imported. Sources may change while
 a process runs (an update, a merge); what it compiles then is of the old ones, of the new ones or of
 both, and must not be kept under anybody's stamp.
 """
@@ -8,45 +8,49 @@ both, and must not be kept under anybody's stamp.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final
 
 
-class _Read(NamedTuple):
-    digest: str
-    written: tuple[tuple[int, int], ...]
-    """When each file was written, [ns], and its size: cheaper to ask again than the digest."""
+class Sources:
+    """Files of one folder, as they are when this is made.
 
+    Examples
+    --------
+    >>> here = Sources(Path(__file__).parent, lambda: [Path(__file__)])
+    >>> len(here.digest), here.changed()
+    (64, False)
+    """
 
-def kernel_digest() -> str:
-    """Digest of the sources of all kernels, and of the tolerances that they hold as constants."""
-    return _as_first_read().digest
+    def __init__(self, folder: Path, files: Callable[[], list[Path]]) -> None:
+        self._files = files
+        found = files()
+        self._written = _written(found)
+        digest = hashlib.sha256()
+        for path in found:
+            digest.update(path.relative_to(folder).as_posix().encode())
+            digest.update(path.read_bytes())
+        self.digest: Final = digest.hexdigest()
+        """Of their names and contents."""
 
-
-def sources_changed() -> bool:
-    """Whether a source was written since the digest was taken."""
-    return _written(_sources()) != _as_first_read().written
+    def changed(self) -> bool:
+        """Whether one was written since, came or went."""
+        return _written(self._files()) != self._written
 
 
 @lru_cache(maxsize=1)
-def _as_first_read() -> _Read:
+def kernel_sources() -> Sources:
+    """The sources of all kernels, and the tolerances that they hold as constants."""
     package = Path(__file__).parents[1]
-    files = _sources()
-    written = _written(files)
-    digest = hashlib.sha256()
-    for path in files:
-        digest.update(path.relative_to(package).as_posix().encode())
-        digest.update(path.read_bytes())
-    return _Read(digest.hexdigest(), written)
-
-
-def _sources() -> list[Path]:
-    package = Path(__file__).parents[1]
-    return sorted([package / "tolerance.py", *package.glob("**/kernels/*.py")])
+    return Sources(
+        package, lambda: sorted([package / "tolerance.py", *package.glob("**/kernels/*.py")])
+    )
 
 
 def _written(files: list[Path]) -> tuple[tuple[int, int], ...]:
+    """When each was written, [ns], and its size: cheaper to ask than the digest."""
     try:
         found = [file.stat() for file in files]
     except OSError:  # one has gone since it was listed

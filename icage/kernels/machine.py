@@ -5,6 +5,7 @@ functions it calls: after an update that touches one kernel, its callers would g
 old machine code without a word. Here the stamp is the content of all kernel files together.
 Environments that share a checkout do not share the cache, or each would make the other's stale:
 the versions of numba and llvmlite are part of its files' names, as Python's is by numba's doing.
+The simulator's loops are kept in the same way.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from numba.core.event import Event, Listener, register
 from numba.core.runtime.nrt import rtsys
 
 from icage.kernels.compiling import announce
-from icage.kernels.digest import kernel_digest, sources_changed
+from icage.kernels.digest import Sources, kernel_sources
 
 TOOLS: Final = f"numba{numba.__version__}-llvmlite{llvmlite.__version__}"
 """What makes the machine code."""
@@ -36,22 +37,30 @@ def dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function, to be compiled without fast-math and cached on disk.
 
     Kernels touch no Python object, so they release its lock and threads share the cores.
-
-    Where numba may write a cache neither beside the file nor into the user's own folder, every
-    process compiles for itself.
     """
-    return _dispatcher(function, TOOLS, borrows)
+    return _kernel(function, TOOLS, borrows)
 
 
 def inner_dispatcher_of(function: Callable[..., Any], borrows: bool = False) -> Any:
     """The function as other kernels call it."""
-    return _dispatcher(function, f"inner.{TOOLS}", borrows, **_INNER)
+    return _kernel(function, f"inner.{TOOLS}", borrows, **_INNER)
 
 
-def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **options: Any) -> Any:
+def _kernel(function: Callable[..., Any], suffix: str, borrows: bool, **options: Any) -> Any:
     # what counts no references cannot make an array; said of every kernel, for one that does not
     # say is compiled as its first caller is
     options |= {"fastmath": False, "nogil": True, "_nrt": not borrows}
+    return stamped(function, kernel_sources(), suffix, **options)
+
+
+def stamped(
+    function: Callable[..., Any], sources: Sources, suffix: str = TOOLS, **options: Any
+) -> Any:
+    """The function, to be compiled and cached on disk under the digest of all of its sources.
+
+    Where numba may write a cache neither beside the file nor into the user's own folder, every
+    process compiles for itself.
+    """
     try:
         dispatcher: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
@@ -62,10 +71,10 @@ def _dispatcher(function: Callable[..., Any], suffix: str, borrows: bool, **opti
     cache._cache_file = type(cache._cache_file)(
         cache_path=cache.cache_path,
         filename_base=f"{cache._impl.filename_base}.{suffix}",
-        source_stamp=kernel_digest(),
+        source_stamp=sources.digest,
     )
     cache.load_overload = _without_what_compiles(cache)
-    cache.save_overload = _of_these_sources(cache.save_overload)
+    cache.save_overload = _while_unchanged(sources, cache.save_overload)
     return _kept(dispatcher)
 
 
@@ -101,14 +110,16 @@ class _Watch(Listener):
         pass
 
 
-def _of_these_sources(save: Callable[[Any, Any], None]) -> Callable[[Any, Any], None]:
+def _while_unchanged(
+    sources: Sources, save: Callable[[Any, Any], None]
+) -> Callable[[Any, Any], None]:
     """Keeps machine code only while the sources are those of the stamp.
 
     A process that runs on across an update would leave that of the old ones under the new stamp.
     """
 
     def save_if_so(signature: Any, machine_code: Any) -> None:
-        if not sources_changed():
+        if not sources.changed():
             save(signature, machine_code)
 
     return save_if_so

@@ -17,7 +17,7 @@ from icage.cells.kernels.search import explore
 from icage.kernels import background
 from icage.kernels import compiled as module
 from icage.kernels.compiled import compiled, compiled_borrowing
-from icage.kernels.digest import kernel_digest
+from icage.kernels.digest import kernel_sources
 from icage.kernels.machine import TOOLS
 
 SCRIPT = """
@@ -40,7 +40,7 @@ def answer(**environment: str) -> str:
 
 def test_a_change_in_any_kernel_makes_every_cached_one_stale() -> None:
     cache = explore.dispatcher._cache  # type: ignore[attr-defined]
-    assert cache._cache_file._source_stamp == kernel_digest()
+    assert cache._cache_file._source_stamp == kernel_sources().digest
     assert cache._cache_file._index_name.endswith(f".{TOOLS}.nbi")
     assert TOOLS in cache._cache_file._data_name(1)
 
@@ -113,14 +113,14 @@ from pathlib import Path
 import numpy as np
 import icage
 from icage.kernels.compiled import machine_code_at_once
-from icage.kernels.digest import kernel_digest, sources_changed
+from icage.kernels.digest import kernel_sources
 from icage.kernels.straight import corners
-before = kernel_digest()
+before = kernel_sources().digest
 if sys.argv[1] == "update":
     inner = Path(icage.__file__).parent / "kernels" / "union_find.py"
     inner.write_text(inner.read_text() + "\\n# new\\n")
-assert sources_changed() == (sys.argv[1] == "update")
-assert kernel_digest() == before  # of what this process runs
+assert kernel_sources().changed() == (sys.argv[1] == "update")
+assert kernel_sources().digest == before  # of what this process runs
 machine_code_at_once()
 x, y = np.array([0.0, 1.0, 2.0, 2.0]), np.array([0.0, 0.0, 0.0, 1.0])
 print(corners(x, y, 0, 1e-9).tolist())
