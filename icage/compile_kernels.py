@@ -22,6 +22,7 @@ import icage
 from icage.cells.free_space import FreeSpace
 from icage.cells.membership import query
 from icage.cells.target import contacts_as_configuration, is_local_minimum, plateau_through
+from icage.discs.offsets import offsets
 from icage.grasps.of_one_hand import grasps_of_hand
 from icage.hand import HandShape
 from icage.kernels import background, claims
@@ -71,7 +72,9 @@ def _plan() -> None:
 
 
 def _plan_discs() -> None:
-    icage.plan(_case("disc_Y"))
+    case = _case("disc_Y")
+    icage.plan(case)
+    offsets(case.outline, case.finger_radius, 4)  # where no true curve is found
 
 
 def _starts() -> None:

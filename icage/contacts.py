@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, real_numbers
 from icage.errors import GraspError
+from icage.geometry.kernels.ways_off import all_can_leave
 from icage.geometry.near_frame import NearFrame
 from icage.hand import HandShape
 from icage.library_faults import geometry_told
@@ -25,6 +26,12 @@ SMALLEST_RADIUS = SAME_POINT
 
 _QUADRANT = 64
 """Segments a quadrant of the offset that tells a closed pocket from the outside."""
+
+_SPARE = 1e-9
+"""[diameter] What a disc that leaves has to spare, far above rounding."""
+
+_NEARLY = 0.9
+"""[CONTACT_OFF] How far from its centre a disc may begin to leave: less than what is a pocket."""
 
 
 def as_contacts(contacts: ArrayLike) -> FloatArray:
@@ -179,6 +186,11 @@ def _at(r: float, unit: str) -> str:
 
 def _check_pockets(outline: Outline, contacts: FloatArray, r: float, unit: str) -> None:
     """A centre inside the exterior ring of the offset stands in a pocket no disc can enter."""
+    size = outline.diameter
+    x, y = np.array(outline.vertices.T, order="C")
+    # a centre so near to one from which a disc can leave lies too shallow to be in a pocket below
+    if all_can_leave(x, y, contacts.copy(), r + _SPARE * size, _NEARLY * CONTACT_OFF * size):
+        return
     frame = NearFrame.of(outline)
     offset = frame.outline_into(outline).polygon.buffer(r, quad_segs=_QUADRANT)
     exterior = shapely.Polygon(shapely.get_exterior_ring(offset))

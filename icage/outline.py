@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from icage.arrays import FloatArray, read_only, real_numbers
 from icage.errors import GeometryError, OutlineError
+from icage.kernels.widest import largest_square
 from icage.library_faults import geometry_told
 from icage.near_touch import NEAREST, near_touch
 from icage.values import Value
@@ -28,7 +29,7 @@ _THINNEST = 1e-9
 """[diameter^2] Area below which a polygon counts as having none: a triangle of this area is seven
 times as wide as the bumps that the planner takes for straight (``tolerance.MERGE_VERTEX``)."""
 
-_FEW = 60
+_FEW = 300
 """Vertices of which all pairs are compared sooner than their convex hull is found."""
 
 _ROWS = 256
@@ -93,8 +94,9 @@ class Outline(Value):
 
     @geometry_told()
     def _settle(self, points: FloatArray) -> None:
-        repeated = (points == np.roll(points, 1, axis=0)).all(axis=1)
-        points = points[~repeated] if not repeated.all() else points[:1]
+        repeated = (points == points[np.arange(len(points)) - 1]).all(axis=1)
+        if repeated.any():
+            points = points[~repeated] if not repeated.all() else points[:1]
         if len(points) < 3:
             raise OutlineError(
                 f"the outline has {len(points)} different vertices; at least 3 are needed"
@@ -160,6 +162,8 @@ def _as_points(vertices: ArrayLike) -> FloatArray:
         raise OutlineError(
             f"outline vertices must be pairs of numbers [x, y]; found an array {points.shape}"
         )
+    if np.abs(points).max(initial=0.0) <= LARGEST_COORDINATE:  # not if one of them is nan
+        return points
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise OutlineError(f"outline vertex {bad[0]} is {points[bad[0]].tolist()}; must be finite")
@@ -174,9 +178,10 @@ def _as_points(vertices: ArrayLike) -> FloatArray:
 
 def _diameter(points: FloatArray) -> float:
     """Largest distance between two vertices."""
-    hull = points
-    if len(points) >= _FEW:
-        hull = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(points)))
+    if len(points) <= _FEW:
+        x, y = np.array(points.T, order="C")
+        return math.sqrt(largest_square(x, y))
+    hull = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(points)))
     largest = 0.0
     for k in range(0, len(hull), _ROWS):
         x, y = (hull[k : k + _ROWS, None] - hull[None, k:]).transpose(2, 0, 1)

@@ -151,7 +151,7 @@ class Search:
         """A configuration of least sigma on the facet of an edge (the middle of a plateau)."""
         return self.edge_configurations([edge])[0]
 
-    def edge_configurations(self, edges: list[int]) -> list[Configuration]:
+    def edge_configurations(self, edges: list[int] | IntArray) -> list[Configuration]:
         """The same for several edges."""
         which = np.array(edges, dtype=np.int64)
         rows = self.edges[which]

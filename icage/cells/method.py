@@ -8,7 +8,12 @@ from icage.arrays import FloatArray
 from icage.cage import Cage, CageStatus, not_a_cage
 from icage.cells.free_space import FreeSpace, Search, Tree, merge_tree, search
 from icage.cells.largest_sigma import largest_sigma_in
-from icage.cells.minima import escape_path, first_joining, grasps_and_punctures
+from icage.cells.minima import (
+    escape_path,
+    first_joining,
+    grasps_and_punctures,
+    has_joinings_between,
+)
 from icage.cells.target import Target, contacts_as_configuration, find_target
 from icage.cells.why_not import plateau_reason, why_not
 from icage.cells.work import CageWork
@@ -140,6 +145,8 @@ def cage_on(
 
 def _cut_warnings(tree: Tree, escape: float, size: float) -> tuple[str, ...]:
     """Whether sigma_first hangs on the depth below which a minimum does not count."""
+    if not has_joinings_between(tree, DEPTH_FINE * size, DEPTH_ROUGH * size):
+        return ()
     fine = first_joining(tree, DEPTH_FINE * size, escape)
     rough = first_joining(tree, DEPTH_ROUGH * size, escape)
     chosen = first_joining(tree, DEPTH_CUT * size, escape)

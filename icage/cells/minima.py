@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.arrays import ComplexArray, FloatArray
+from icage.arrays import ComplexArray, FloatArray, IntArray
 from icage.cage import GraspMinimum, Puncture
 from icage.cells.free_space import Configuration, FreeSpace, Search, Tree, below_escape
 from icage.cells.kernels.columns import (
@@ -14,16 +14,14 @@ from icage.cells.kernels.columns import (
     BIRTH_WX,
     BORN_FINGER,
     BORN_SLOT,
-    EDGE_FROM,
     LOW_DEPTH,
     LOW_LEVEL,
     MERGE_SIDE,
-    NODE_EDGE,
     PASS_SIGMA,
     StartSide,
 )
 from icage.cells.kernels.facet import middles_on_facets
-from icage.cells.kernels.tree import births
+from icage.cells.kernels.tree import births, way_to
 from icage.cells.target import Target, plateau_through
 from icage.geometry.statics import free_fingers, free_fingers_of
 from icage.geometry.way_out import corners_before_pinch
@@ -58,6 +56,16 @@ def joinings(tree: Tree, depth_cut: float) -> list[Joining]:
             met.append(Joining(level, edge, tuple(other)))
         members[keep] = kept + lost
     return met
+
+
+def has_joinings_between(tree: Tree, low: float, high: float) -> bool:
+    """Whether the target's component meets one deeper than ``low`` but not than ``high``, [unit].
+
+    If not, ``first_joining`` is the same for every depth cut between them.
+    """
+    depth = tree.lows[:, LOW_DEPTH]
+    doubtful = (depth > low) & (depth <= high)
+    return bool((tree.merges[doubtful, MERGE_SIDE] != StartSide.NEITHER).any())
 
 
 def first_joining(tree: Tree, depth_cut: float, escape: float) -> float:
@@ -174,17 +182,12 @@ def escape_edge(found: Search) -> int:
     """The pass of the escape puncture: the first one above all those before the pinched hand."""
     path = path_edges(found)
     high = found.edge_value[path, PASS_SIGMA]
-    return path[int(np.argmax(high >= below_escape(found)))]
+    return int(path[np.argmax(high >= below_escape(found))])
 
 
-def path_edges(found: Search) -> list[int]:
+def path_edges(found: Search) -> IntArray:
     """Edges from the target's cell to the pinched one, in order."""
-    edges: list[int] = []
-    node = len(found.nodes) - 1
-    while found.nodes[node, NODE_EDGE] >= 0:
-        edges.append(int(found.nodes[node, NODE_EDGE]))
-        node = int(found.edges[edges[-1], EDGE_FROM])
-    return edges[::-1]
+    return way_to(found.nodes, found.edges, len(found.nodes) - 1)
 
 
 def _escape(found: Search) -> Puncture:

@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.geometry.exterior import WALL, Pieces
+from icage.geometry.exterior import Pieces
+from icage.geometry.kernels.pieces import WALL
 
 _BLUNT: Final = 0.1
 """[1] Sine of the turn at a vertex below which it moves along the mean of both edges' normals."""

@@ -11,7 +11,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.geometry.exterior import WALL, exterior_pieces
+from icage.geometry.exterior import exterior_pieces
+from icage.geometry.kernels.pieces import WALL
 from icage.geometry.tips import sharp_tips
 from icage.hand import HandShape
 from icage.outline import Outline

@@ -11,18 +11,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from icage.arrays import BoolArray, FloatArray, IntArray
-from icage.discs.arc_stops import even_parts, graded_stops, unit_vectors
+from icage.arrays import FloatArray
 from icage.discs.edges import Edges
 from icage.discs.elements import Elements, outer_ring
+from icage.discs.kernels.arc_stops import (
+    OnArcs,
+    near_arcs,
+    on_arcs,
+    ring_with,
+    split_arcs,
+    widest_part,
+)
 from icage.errors import GeometryError
 from icage.geometry.exterior import without_straight_vertices
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
 from icage.tolerance import COLLISION, CONTACT_OFF
-
-_AT_END = 1e-12
-"""[rad] A contact this near to the end of an arc counts as at the end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +72,7 @@ class TrueCurve:
         ``segments`` a quadrant at least; on an arc that one of the points ``through`` (k, 2) is on,
         that point lies over the middle of a short chord and the others are graded.
         """
-        arc, at = self._stops(segments, through)
-        follows = arc[1:] == arc[:-1]
-        inside = np.flatnonzero(follows[1:] & follows[:-1]) + 1
-        return self._ring(arc[inside], at[inside], np.full(len(inside), self.radius))
+        return self._drawn(segments, through, touched=False)
 
     def outer(self, segments: int, through: FloatArray | None = None) -> Outline:
         """Tangents for the arcs: outside the curve, with all its corners; see ``inner``.
@@ -81,22 +82,17 @@ class TrueCurve:
         GeometryError:
             The tangents of two arcs run into each other: more segments are needed.
         """
-        arc, at = self._stops(segments, through, touched=True)
-        begin = np.flatnonzero(arc[1:] == arc[:-1])
-        step = at[begin + 1] - at[begin]
-        reach = self.radius / np.cos(0.5 * step)
-        return self._ring(arc[begin], at[begin] + 0.5 * step, reach)
+        return self._drawn(segments, through, touched=True)
 
     def sagitta(self, segments: int) -> float:
         """Most that the inner polygon may lie inside the curve, [unit]."""
-        turn = self.elements.turn
-        widest = float((turn / even_parts(turn, segments)).max(initial=0.0))
-        return self.radius * (1.0 - math.cos(0.5 * widest))
+        return self.radius * (1.0 - math.cos(0.5 * widest_part(self.elements.turn, segments)))
 
     def on_arcs(self, contacts: FloatArray) -> FloatArray:
         """Those of the points (k, 2) that are on an arc."""
-        _, on = self._angles(contacts)
-        return contacts[on.any(axis=0)]
+        on = np.zeros(len(contacts), dtype=np.bool_)
+        on[self._found_on_arcs(contacts).point] = True
+        return contacts[on]
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Distance (k,) of points (k, 2) from the curve, [unit]."""
@@ -116,52 +112,22 @@ class TrueCurve:
         gap = np.where(over, np.abs(far - self.radius), np.inf)
         return np.minimum(least, gap.min(axis=0, initial=np.inf))
 
-    def _ring(self, arc: IntArray, at: FloatArray, reach: FloatArray) -> Outline:
-        """The corners of the curve, and in each arc (element) the points at these angles [rad] from
-        its start and distances from its vertex.
-        """
+    def _drawn(self, segments: int, through: FloatArray | None, *, touched: bool) -> Outline:
+        """Chords for the arcs, or tangents, which are ``touched`` at their middles."""
         every = self.elements
-        over = self.ring[every.number[arc]]
-        over = over + reach[:, None] * unit_vectors(every.angle[arc] + at)
-        order = np.argsort(np.concatenate([np.arange(len(every)), arc]), kind="stable")
-        return Outline.computed(np.concatenate([every.first, over])[order])
+        on = self._found_on_arcs(np.empty((0, 2)) if through is None else through)
+        over = split_arcs(every.turn, segments, on, touched)
+        direction = every.angle[over.element] + over.angle
+        reach = self.radius / np.cos(over.half)
+        ring = ring_with(
+            every, self.ring, over.element, np.cos(direction), np.sin(direction), reach
+        )
+        return Outline.computed(ring)
 
-    def _stops(
-        self, segments: int, through: FloatArray | None, *, touched: bool = False
-    ) -> tuple[IntArray, FloatArray]:
-        """Element, ascending, and angle [rad] from its start of all points where arcs are split,
-        both ends among them.
-        """
-        turn = self.elements.turn
-        parts = even_parts(turn, segments)
-        parts[turn == 0.0] = -1
-        graded = {} if through is None else self._on_elements(through)
-        parts[list(graded)] = -1
-        arc = np.repeat(np.arange(len(turn)), parts + 1)
-        place = np.arange(len(arc)) - np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
-        at = place * (turn / parts)[arc]
-        if not graded:
-            return arc, at
-        stops = {
-            k: graded_stops(float(turn[k]), segments, angles, touched=touched)
-            for k, angles in graded.items()
-        }
-        arc = np.concatenate([arc, np.repeat(list(stops), [len(one) for one in stops.values()])])
-        order = np.argsort(arc, kind="stable")
-        return arc[order], np.concatenate([at, *stops.values()])[order]
-
-    def _angles(self, points: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Angles [rad] of points (k, 2) from the start of every element, and on which arcs they
-        are, (elements, k) both.
-        """
-        every = self.elements
-        off = points - self.ring[every.number, None]
-        far = np.hypot(off[..., 0], off[..., 1])
-        t = (np.arctan2(off[..., 1], off[..., 0]) - every.angle[:, None]) % (2.0 * math.pi)
-        on = np.abs(far - self.radius) <= CONTACT_OFF * self.outline.diameter
-        return t, on & (t > _AT_END) & (t < every.turn[:, None] - _AT_END)
-
-    def _on_elements(self, points: FloatArray) -> dict[int, list[float]]:
-        """Element -> angles from its start at which points (k, 2) are on it, of the arcs."""
-        t, on = self._angles(points)
-        return {int(k): t[k, on[k]].tolist() for k in np.flatnonzero(on.any(axis=1))}
+    def _found_on_arcs(self, points: FloatArray) -> OnArcs:
+        """Which of the points (k, 2) are on arcs, and where."""
+        slack = CONTACT_OFF * self.outline.diameter
+        # kernels are compiled for arrays that may be written to
+        points = np.array(points, dtype=np.float64)
+        near = near_arcs(self.elements, self.ring, self.radius, points, slack)
+        return on_arcs(self.elements, near, np.arctan2(near.way_y, near.way_x))

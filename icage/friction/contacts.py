@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from icage.geometry.exterior import WALL, Pieces
+from icage.geometry.exterior import Pieces
+from icage.geometry.kernels.pieces import WALL
 
 _WIDEST = 2.0
 """[rad] A wider cone is split: a cone of less than pi is the meet of two half planes, and nearer

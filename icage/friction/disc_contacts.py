@@ -19,7 +19,8 @@ from icage.discs.arc_stops import unit_vectors
 from icage.discs.curve import TrueCurve
 from icage.discs.edges import Edges
 from icage.friction.kernels.disc_features import ARC, CORNER, EDGE
-from icage.geometry.exterior import WALL, Pieces
+from icage.geometry.exterior import Pieces
+from icage.geometry.kernels.pieces import WALL
 
 _PART = 0.25
 """[rad] Turn of a part of an arc to begin with."""

@@ -8,14 +8,23 @@ tolerance: a float filter first [Shewchuk1997, ccwerrboundA], rational arithmeti
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Final
+from itertools import pairwise
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
-from icage.geometry.kernels.merging import FILTER, merge_rings
+from icage.geometry.kernels.merging import (
+    FILTER,
+    GONE,
+    Mesh,
+    half_edges,
+    join_triangles,
+    ring_by_ring,
+)
+from icage.geometry.kernels.pieces import numbered
 
 MAX_EDGES: Final = 10
 """Cap on edges per piece: larger ones are fewer, but cost more each. [docs/theory.md, Sec. 3.1]"""
@@ -55,35 +64,43 @@ def triangulate(polygon: shapely.Polygon) -> tuple[FloatArray, IntArray]:
     """
     rings = [polygon.exterior, *polygon.interiors]
     vertices = np.concatenate([shapely.get_coordinates(ring)[:-1] for ring in rings])
-    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
-    corners = shapely.get_coordinates(pieces).reshape(-1, 4, 2)[:, :3]
-    keys, wanted = vertices @ [1.0, 1.0j], corners @ [1.0, 1.0j]
-    order = np.argsort(keys, kind="stable")
-    place = np.searchsorted(keys[order], wanted).clip(max=len(keys) - 1)
-    triangles = order[place]
-    if (keys[triangles] != wanted).any():
+    return vertices, triangles_on(vertices, polygon)
+
+
+def triangles_on(vertices: FloatArray, polygon: shapely.Polygon) -> IntArray:
+    """The triangles of ``triangulate``, for a polygon whose vertices (n, 2) are known."""
+    corners = shapely.get_coordinates(shapely.constrained_delaunay_triangles(polygon))
+    x, y = columns(vertices)
+    origin, unsure, known = numbered(x, y, corners)
+    if not known:
         raise GeometryError("the triangulation moved or invented a vertex")
-    if len(triangles) != len(vertices) + 2 * len(polygon.interiors) - 2:
+    triangles = origin.reshape(-1, 3)
+    holes = shapely.get_num_interior_rings(polygon)
+    if len(triangles) != len(vertices) + 2 * holes - 2:
         raise GeometryError(
-            f"{len(triangles)} triangles for {len(vertices)} vertices and "
-            f"{len(polygon.interiors)} holes"
+            f"{len(triangles)} triangles for {len(vertices)} vertices and {holes} holes"
         )
-    return vertices, _counterclockwise(vertices, triangles)
-
-
-def _counterclockwise(vertices: FloatArray, triangles: IntArray) -> IntArray:
-    a, b, c = np.moveaxis(vertices[triangles], 1, 0)
-    left = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
-    right = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
-    det = left - right
-    sign = np.sign(det)
-    for t in np.flatnonzero(np.abs(det) <= FILTER * (np.abs(left) + np.abs(right))):
+    for t in unsure.tolist():
         p, q, r = vertices[triangles[t]].tolist()
-        sign[t] = orientation((p[0], p[1]), (q[0], q[1]), (r[0], r[1]))
-        if sign[t] == 0.0:
+        sign = orientation((p[0], p[1]), (q[0], q[1]), (r[0], r[1]))
+        if sign == 0:
             i, j, k = triangles[t]
             raise GeometryError(f"the triangle on vertices {i}, {j}, {k} has no area")
-    return np.where((sign > 0.0)[:, None], triangles, triangles[:, [0, 2, 1]])
+        if sign < 0:
+            triangles[t] = triangles[t, [0, 2, 1]]
+    return triangles
+
+
+class Joined(NamedTuple):
+    """Convex pieces as half edges: ``origin`` of each, its ``twin``, and the pieces' own.
+
+    ``edges`` has the half edges of the pieces ring by ring, piece k those in ptr[k]:ptr[k + 1].
+    """
+
+    origin: IntArray
+    twin: IntArray
+    edges: IntArray
+    ptr: IntArray
 
 
 def merge_convex(
@@ -108,39 +125,33 @@ def merge_convex(
     -------
     Rings of vertex indices, counterclockwise, each from its smallest index; in ascending order.
     """
-    corners = np.ascontiguousarray(triangles, dtype=np.int64)
-    places = np.asarray(vertices, dtype=np.float64)
-    origin = corners.ravel()
-    twin = twins(origin, corners[:, [1, 2, 0]].ravel(), len(places))
-    order = _longest_first(places, origin, twin)
-    x, y = np.ascontiguousarray(places[:, 0]), np.ascontiguousarray(places[:, 1])
-    merged, ends, certain = merge_rings(x, y, origin, twin, order, max_edges)
-    if certain:
-        numbers, last = merged.tolist(), ends.tolist()
-        return sorted(numbers[a:b] for a, b in zip([0, *last[:-1]], last, strict=True))
-    points: list[Point] = [(x, y) for x, y in places.tolist()]
-    mesh = _HalfEdges(origin, twin)
-    for edge in order.tolist():
-        mesh.remove_if_convex(edge, points, max_edges)
-    return mesh.rings()
+    x, y = columns(vertices)
+    pieces = join_convex(x, y, triangles, len(triangles), max_edges)
+    numbers, ptr = pieces.origin[pieces.edges].tolist(), pieces.ptr.tolist()
+    return [numbers[a:b] for a, b in pairwise(ptr)]
 
 
-def twins(start: IntArray, end: IntArray, vertices: int) -> IntArray:
-    """The half edge that runs the other way, -1 where there is none."""
-    key, back = start * vertices + end, end * vertices + start
-    order = np.argsort(key)
-    ordered = key[order]
-    if bool((ordered[1:] == ordered[:-1]).any()):
+def join_convex(
+    x: FloatArray, y: FloatArray, triangles: IntArray, joined: int, max_edges: int = MAX_EDGES
+) -> Joined:
+    """The pieces of ``merge_convex`` with their neighbours; only the first triangles are joined.
+
+    Those from ``joined`` on come last, in their order, each from its first corner.
+    """
+    origin = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
+    mesh = half_edges(x, y, origin, 3 * joined)
+    if not mesh.simple:
         raise GeometryError("two triangles use one edge in the same direction")
-    place = np.searchsorted(ordered, back).clip(max=len(key) - 1)
-    return np.where(ordered[place] == back, order[place], -1).astype(np.int64)
+    after, certain = join_triangles(x, y, origin, mesh, max_edges)
+    if not certain:
+        after = _joined_exactly(x, y, origin, mesh, max_edges)
+    return Joined(origin, mesh.twin, *ring_by_ring(after, mesh.ranked, 3 * joined))
 
 
-def _longest_first(vertices: FloatArray, origin: IntArray, twin: IntArray) -> IntArray:
-    """Every diagonal once, by its half edge of smaller number."""
-    edges = np.flatnonzero(np.arange(len(twin)) < twin)
-    side = vertices[origin[edges]] - vertices[origin[twin[edges]]]
-    return edges[np.argsort(-(side[:, 0] ** 2) - side[:, 1] ** 2, kind="stable")]
+def columns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The coordinates of points (n, 2) as two arrays (n,)."""
+    x, y = np.array(np.transpose(points), dtype=np.float64, order="C")
+    return x, y
 
 
 def _stays_convex(before: Point, corner: Point, after: Point) -> bool:
@@ -152,8 +163,19 @@ def _stays_convex(before: Point, corner: Point, after: Point) -> bool:
     return (before[axis] < corner[axis]) == (corner[axis] < after[axis])
 
 
+def _joined_exactly(
+    x: FloatArray, y: FloatArray, origin: IntArray, mesh: Mesh, max_edges: int
+) -> IntArray:
+    """``join_triangles`` once more, in exact arithmetic."""
+    points: list[Point] = list(zip(x.tolist(), y.tolist(), strict=True))
+    edges = _HalfEdges(origin, mesh.twin)
+    for edge in mesh.diagonals.tolist():
+        edges.remove_if_convex(edge, points, max_edges)
+    return np.array(edges.next, dtype=np.int64)
+
+
 class _HalfEdges:
-    """Half edges of a triangulation, merged in exact arithmetic: ``merge_rings`` once more."""
+    """Half edges of a triangulation, merged in exact arithmetic."""
 
     def __init__(self, origin: IntArray, twin: IntArray) -> None:
         count = len(origin)
@@ -161,7 +183,6 @@ class _HalfEdges:
         self.next: list[int] = [e + 1 if e % 3 < 2 else e - 2 for e in range(count)]
         self.prev: list[int] = [e - 1 if e % 3 > 0 else e + 2 for e in range(count)]
         self.twin: list[int] = twin.tolist()
-        self._alive = [True] * count
         self._piece = [e // 3 for e in range(count)]
         self._parent = list(range(count // 3))
         self._edges = [3] * (count // 3)
@@ -186,22 +207,6 @@ class _HalfEdges:
         for here, there in ((edge, twin), (twin, edge)):
             into, out = self.prev[here], self.next[there]
             self.next[into], self.prev[out] = out, into
-            self._alive[here] = False
+        self.next[edge] = self.next[twin] = GONE
         self._parent[other] = mine
         self._edges[mine] = edges
-
-    def rings(self) -> list[list[int]]:
-        seen = [not alive for alive in self._alive]
-        rings: list[list[int]] = []
-        for start, done in enumerate(seen):
-            if done:
-                continue
-            ring: list[int] = []
-            edge = start
-            while not seen[edge]:
-                seen[edge] = True
-                ring.append(self.origin[edge])
-                edge = self.next[edge]
-            first = ring.index(min(ring))
-            rings.append(ring[first:] + ring[:first])
-        return sorted(rings)

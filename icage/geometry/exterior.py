@@ -14,18 +14,13 @@ import shapely
 
 from icage.arrays import FloatArray, IntArray
 from icage.errors import GeometryError
-from icage.geometry.convex import merge_convex, triangulate, twins
+from icage.geometry.convex import columns, join_convex, triangles_on
+from icage.geometry.kernels.pieces import slots_of
 from icage.geometry.round_chains import with_apexes
 from icage.hand import HandShape
-from icage.kernels.straight import corners
+from icage.kernels.straight import corners, sharpest
 from icage.outline import Outline
 from icage.tolerance import MERGE_VERTEX
-
-WALL = -1
-"""Neighbour of a slot that is an edge of the object."""
-
-BOX = -2
-"""Neighbour of a slot that is an edge of the box."""
 
 
 class Pieces(NamedTuple):
@@ -71,19 +66,9 @@ def without_straight_vertices(vertices: FloatArray, diameter: float) -> FloatArr
     """
     bound = MERGE_VERTEX * diameter
     points = np.asarray(vertices)
-    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
-    side = after - before
-    off = np.abs(
-        side[:, 0] * (points[:, 1] - before[:, 1]) - side[:, 1] * (points[:, 0] - before[:, 0])
-    )
-    length = np.hypot(side[:, 0], side[:, 1])
-    sharp = (off > bound * length) | (((points - before) * (after - points)).sum(axis=1) < 0.0)
-    short = np.hypot(*(points - before).T) <= bound
-    if bool((sharp & ~short).all()):
-        return points
-    begin = int(np.argmax(off * (sharp & ~short)))
-    x, y = np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
-    return points[corners(x, y, begin, bound)]
+    x, y = columns(points)
+    begin, all_kept = sharpest(x, y, bound)
+    return points if all_kept else points[corners(x, y, begin, bound)]
 
 
 def exterior_pieces(
@@ -104,40 +89,34 @@ def exterior_pieces(
     box = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
     corner = len(box)
     vertices = np.concatenate([box, ring])
-    used, fans = np.arange(len(vertices)), list[list[int]]()
+    used, fans = np.arange(len(vertices)), np.empty((0, 3), dtype=np.int64)
     if apexes:
         coarse, above, fans = with_apexes(ring)
         vertices = np.concatenate([vertices, above])
         used = np.concatenate([used[:corner], corner + coarse])
-    _, triangles = triangulate(shapely.Polygon(box, [vertices[used[corner:]]]))
-    triangles = used[triangles]
-    rings = merge_convex(vertices, triangles) if merge else triangles.tolist()
-    rings += [[corner + v for v in triangle] for triangle in fans]
-    return _as_pieces(vertices, rings, outline.diameter), origin
+    around = vertices[used]
+    room = shapely.Polygon(box, [around[corner:]])
+    triangles = used[triangles_on(around, room)]
+    joined = len(triangles) if merge else 0
+    triangles = np.concatenate([triangles, corner + fans])
+    return _as_pieces(vertices, triangles, joined, outline.diameter), origin
 
 
-def _as_pieces(vertices: FloatArray, rings: list[list[int]], diameter: float) -> Pieces:
-    sizes = np.array([len(r) for r in rings])
-    ptr = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-    slot_vertex = np.array([v for r in rings for v in r], dtype=np.int64)
-    slot_end = np.array([v for r in rings for v in r[1:] + r[:1]], dtype=np.int64)
-    owner = np.repeat(np.arange(len(rings)), sizes)
-    side = vertices[slot_end] - vertices[slot_vertex]
-    length = np.hypot(side[:, 0], side[:, 1])
-    twin = twins(slot_vertex, slot_end, len(vertices))
-    outside = np.where((slot_vertex < 4) & (slot_end < 4), BOX, WALL)
-    neighbour = np.where(twin >= 0, owner[twin], outside)
-    walls = np.flatnonzero(neighbour == WALL)
+def _as_pieces(vertices: FloatArray, triangles: IntArray, joined: int, diameter: float) -> Pieces:
+    """The first triangles joined to convex pieces, and the others, as flat arrays."""
+    x, y = columns(vertices)
+    pieces = join_convex(x, y, triangles, joined)
+    slots = slots_of(x, y, *pieces)
     return Pieces(
-        x=np.ascontiguousarray(vertices[:, 0]),
-        y=np.ascontiguousarray(vertices[:, 1]),
-        ptr=ptr,
-        slot_vertex=slot_vertex,
-        slot_neighbour=neighbour,
-        normal_x=-side[:, 1] / length,
-        normal_y=side[:, 0] / length,
-        wall_from=slot_vertex[walls],
-        wall_to=slot_end[walls],
+        x=x,
+        y=y,
+        ptr=pieces.ptr,
+        slot_vertex=slots.vertex,
+        slot_neighbour=slots.neighbour,
+        normal_x=slots.normal_x,
+        normal_y=slots.normal_y,
+        wall_from=slots.wall_from,
+        wall_to=slots.wall_to,
         scale=diameter,
         diameter=diameter,
     )

@@ -32,6 +32,29 @@ def _straight(x, y, first, start, count, bound):
 
 
 @compiled
+def sharpest(x, y, bound):
+    """The vertex that is furthest off the chord of its neighbours, times that chord, and if all are
+    kept: each is further off than ``bound``, or the ring turns back there, and no edge is shorter.
+    """
+    n = len(x)
+    found, most = 0, -1.0
+    every = True
+    for k in range(n):
+        before, after = k - 1, (k + 1) % n
+        px, py = x[k] - x[before], y[k] - y[before]
+        sx, sy = x[after] - x[before], y[after] - y[before]
+        off = abs(sx * py - sy * px)
+        back = px * (x[after] - x[k]) + py * (y[after] - y[k]) < 0.0
+        sharp = off > bound * np.hypot(sx, sy) or back
+        if not sharp or np.hypot(px, py) <= bound:
+            every = False
+            off = 0.0
+        if off > most:
+            found, most = k, off
+    return found, every
+
+
+@compiled
 def corners(x, y, begin, bound):
     """Marks (n,) of the vertices to keep: the others lie within ``bound`` of the kept ones' chords.
 

@@ -23,6 +23,7 @@ from icage.cells.kernels.columns import (
     MERGE_KEEP,
     MERGE_LOSE,
     MERGE_SIDE,
+    NODE_EDGE,
     PASS_SIGMA,
     StartSide,
 )
@@ -127,6 +128,22 @@ def visited_births(pieces, z, nodes, edges, edge_value, cap, worst):
                     value[k, BIRTH_WX], value[k, BIRTH_WY] = wx, wy
                     where[k, BORN_FINGER], where[k, BORN_SLOT] = i, s
     return Births(value, where)
+
+
+@compiled
+def way_to(nodes, edges, node):
+    """Edges from the first node, where a search began, to this one, in order."""
+    count = 0
+    at = node
+    while nodes[at, NODE_EDGE] >= 0:
+        count += 1
+        at = edges[nodes[at, NODE_EDGE], EDGE_FROM]
+    way = np.empty(count, np.int64)
+    at = node
+    for k in range(count - 1, -1, -1):
+        way[k] = nodes[at, NODE_EDGE]
+        at = edges[way[k], EDGE_FROM]
+    return way
 
 
 @compiled

@@ -27,7 +27,7 @@ from icage.cells.kernels.near import cells_near
 from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.region import least_points
 from icage.cells.kernels.search import _least_on_walls, birth, explore
-from icage.cells.kernels.tree import births, find_at, merge, visited_births
+from icage.cells.kernels.tree import births, find_at, merge, visited_births, way_to
 from icage.cells.kernels.whole import (
     ends_of_minima,
     least_hands,
@@ -269,3 +269,10 @@ def test_what_a_search_has_visited_is_born_where_its_cells_are(seed: int) -> Non
         assert pass_value(s.pieces, s.z, facet, *args, room)[0] == pytest.approx(turned.value[k, 0])
     tree = merge_tree(found)
     assert len(tree.parent) == len(tree.birth)
+
+
+def test_the_way_to_a_cell_leads_from_the_first_one() -> None:
+    """Nodes 0 to 4; edge 0 leads from 0 to 2, edge 1 from 0 to 1, edge 3 from 2 to 4."""
+    nodes = np.array([[0, 0, 0, -1], [0, 0, 0, 1], [0, 0, 0, 0], [0, 0, 0, 2], [0, 0, 0, 3]])
+    edges = np.array([[0, 2, 0, 0], [0, 1, 0, 0], [1, 3, 0, 0], [2, 4, 0, 0], [4, 0, 0, 0]])
+    assert [way_to(nodes, edges, k).tolist() for k in range(5)] == [[], [1], [0], [1, 2], [0, 3]]

@@ -15,7 +15,8 @@ import icage.contact_space.surroundings as surroundings
 from icage.agreement import disagreements
 from icage.contact_space.method import CONTACT_SPACE, ContactSpace
 from icage.formats.case_json import read_case
-from icage.geometry.exterior import BOX, Pieces
+from icage.geometry.exterior import Pieces
+from icage.geometry.kernels.pieces import BOX
 from icage.planner import plan
 from models import CASES
 

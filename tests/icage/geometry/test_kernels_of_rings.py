@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from icage.geometry.kernels.merging import _UNSURE, _corner, _orientation, merge_rings
-from icage.kernels.straight import _straight, corners
+from icage.geometry.convex import _joined_exactly
+from icage.geometry.kernels.merging import (
+    GONE,
+    UNSURE,
+    Mesh,
+    _corner,
+    half_edges,
+    join_triangles,
+    ring_by_ring,
+    sign_of_turn,
+)
+from icage.kernels.straight import _straight, corners, sharpest
 from tests.oracles.geometry import Floats
 
 pytestmark = pytest.mark.usefixtures("plain")
@@ -22,7 +33,7 @@ def exact_sign(x: Floats, y: Floats, a: int, b: int, c: int) -> int:
 
 def test_a_sign_that_is_told_is_the_exact_one() -> None:
     rng = np.random.default_rng(1)
-    told = {-1: 0, 0: 0, 1: 0, _UNSURE: 0}
+    told = {-1: 0, 0: 0, 1: 0, UNSURE: 0}
     for kind in range(4):
         for _ in range(60):
             x, y = rng.normal(size=(2, 3))
@@ -33,21 +44,21 @@ def test_a_sign_that_is_told_is_the_exact_one() -> None:
                 x, y = np.round(3 * x), np.round(3 * y)
             if kind == 3:
                 x[:] = x[0]
-            sign = _orientation(x, y, 0, 1, 2)
+            sign = sign_of_turn(x, y, 0, 1, 2)
             told[sign] += 1
-            if sign != _UNSURE:
+            if sign != UNSURE:
                 assert sign == exact_sign(x, y, 0, 1, 2)
             elif kind != 2:
                 assert kind == 1
             if kind == 3:
                 assert sign == 0
             if kind == 0:
-                assert sign != _UNSURE
+                assert sign != UNSURE
     assert min(told.values()) > 5
     # the filter's bound: what is clear by a hundred roundings is told
     x, y = np.array([0.1, 0.7, 0.4]), np.array([0.1, 0.7, 0.4 + 1e-13])
-    assert _orientation(x, y, 0, 1, 2) == 1
-    assert _orientation(x, y, 1, 0, 2) == -1
+    assert sign_of_turn(x, y, 0, 1, 2) == 1
+    assert sign_of_turn(x, y, 1, 0, 2) == -1
 
 
 @pytest.mark.parametrize("turn", range(4))
@@ -61,50 +72,106 @@ def test_a_corner_turns_left_or_goes_on_or_does_not(turn: int) -> None:
     assert _corner(x, y, 0, 1, 2) == 1
     assert _corner(x, y, 0, 1, 3) == 0
     line = np.array([0.1 + 0.1j, 0.3 + 0.3j, 0.7 + 0.7j]) * way
-    assert _corner(line.real.copy(), line.imag.copy(), 0, 1, 2) == _UNSURE
+    assert _corner(line.real.copy(), line.imag.copy(), 0, 1, 2) == UNSURE
 
 
-def grid(n: int) -> tuple[Floats, Floats, np.ndarray, np.ndarray]:
-    """Squares of a row cut by diagonals: corners, and half edges with their twins."""
+def grid(n: int) -> tuple[Floats, Floats, np.ndarray]:
+    """Squares of a row cut by diagonals: corners, and the triangles' corners three by three."""
     x = np.concatenate([np.arange(n + 1.0)] * 2)
     y = np.repeat([0.0, 1.0], n + 1)
     origin = []
     for k in range(n):
         low, high = k, k + n + 1
         origin += [low, low + 1, high, low + 1, high + 1, high]
-    origin = np.array(origin)
-    after = np.array([3 * (e // 3) + (e + 1) % 3 for e in range(len(origin))])
-    twin = np.full(len(origin), -1)
-    ends = {(origin[e], origin[after[e]]): e for e in range(len(origin))}
-    for (a, b), e in ends.items():
-        twin[e] = ends.get((b, a), -1)
-    return x, y, origin, twin
+    return x, y, np.array(origin)
+
+
+def directed(origin: np.ndarray) -> list[tuple[int, int]]:
+    """Start and end of every half edge of triangles."""
+    corner = origin.reshape(-1, 3)
+    after = np.roll(corner, -1, axis=1).ravel()
+    return list(zip(origin.tolist(), after.tolist(), strict=True))
+
+
+def pieces(after: np.ndarray, mesh: Mesh, origin: np.ndarray, fixed: int) -> list[list[int]]:
+    edges, ptr = ring_by_ring(after, mesh.ranked, fixed)
+    return [origin[edges[a:b]].tolist() for a, b in pairwise(ptr)]
+
+
+def test_half_edges_know_each_other_and_the_longest_diagonal_is_first() -> None:
+    rng = np.random.default_rng(2)
+    for n in (1, 2, 7):
+        x, y, origin = grid(n)
+        x += 0.3 * rng.random(len(x))
+        shuffled = rng.permutation(origin.reshape(-1, 3))
+        origin = np.concatenate([np.roll(t, rng.integers(3)) for t in shuffled])
+        ends = directed(origin)
+        where = {pair: e for e, pair in enumerate(ends)}
+        for fixed in (0, 3, len(origin)):
+            mesh = half_edges(x, y, origin, fixed)
+            assert mesh.simple
+            assert mesh.twin.tolist() == [where.get((b, a), -1) for a, b in ends]
+            assert [ends[e] for e in mesh.ranked] == sorted(ends)
+            shared = [e for e, f in enumerate(mesh.twin.tolist()) if e < f < fixed]
+            assert sorted(mesh.diagonals.tolist()) == shared
+            side = [
+                np.hypot(x[a] - x[b], y[a] - y[b]) for a, b in (ends[e] for e in mesh.diagonals)
+            ]
+            assert side == sorted(side, reverse=True)
+    x, y, origin = grid(1)
+    twice = np.concatenate([origin, [1, 2, 3]])
+    assert not half_edges(x, y, twice, 9).simple
+    x, y, origin = grid(3)  # equally long ones in the order of their numbers
+    mesh = half_edges(x, y, origin, len(origin))
+    assert mesh.diagonals.tolist() == [1, 7, 13, 3, 9]
 
 
 def test_triangles_are_joined_while_they_are_convex_and_small() -> None:
-    x, y, origin, twin = grid(3)
-    order = np.array([e for e in range(len(twin)) if twin[e] > e])
-    vertices, ends, certain = merge_rings(x, y, origin, twin, order, 10)
+    x, y, origin = grid(3)
+    mesh = half_edges(x, y, origin, 18)
+    after, certain = join_triangles(x, y, origin, mesh, 10)
     assert certain
-    assert vertices.tolist() == [0, 1, 2, 3, 7, 6, 5, 4]  # one piece, with its straight corners
-    assert ends.tolist() == [8]
-    vertices, ends, certain = merge_rings(x, y, origin, twin, order, 4)
-    pieces = [p.tolist() for p in np.split(vertices, ends[:-1])]
-    assert sorted(len(p) for p in pieces) == [4, 4, 4]
-    assert all(p[0] == min(p) for p in pieces)
-    assert merge_rings(x, y, origin, twin, order[:0], 10)[1].tolist() == [3, 6, 9, 12, 15, 18]
+    # one piece, with its straight corners
+    assert pieces(after, mesh, origin, 18) == [[0, 1, 2, 3, 7, 6, 5, 4]]
+    assert sum(after == GONE) == 10
+    after, certain = join_triangles(x, y, origin, mesh, 4)
+    found = pieces(after, mesh, origin, 18)
+    assert [len(p) for p in found] == [4, 4, 4]
+    assert all(p[0] == min(p) for p in found)
+    assert found == sorted(found)
+    plain = join_triangles(x, y, origin, mesh, 3)[0]
+    assert pieces(plain, mesh, origin, 18) == sorted(pieces(plain, mesh, origin, 18))
+    assert pieces(plain, mesh, origin, 0) == origin.reshape(-1, 3).tolist()
+    fans = half_edges(x, y, origin, 12)  # the last square stays as it is
+    after, certain = join_triangles(x, y, origin, fans, 10)
+    assert pieces(after, fans, origin, 12) == [[0, 1, 2, 6, 5, 4], [2, 3, 6], [3, 7, 6]]
     y[5] = 0.375  # a notch: what is left of it and what is right of it stay apart
-    vertices, ends, certain = merge_rings(x, y, origin, twin, order, 10)
+    mesh = half_edges(x, y, origin, 18)
+    after, certain = join_triangles(x, y, origin, mesh, 10)
     assert certain
-    for piece in np.split(vertices, ends[:-1]):
+    found = pieces(after, mesh, origin, 18)
+    for piece in found:
         for k in range(len(piece)):
             a, b, c = piece[k - 2], piece[k - 1], piece[k]
             assert exact_sign(x, y, a, b, c) >= 0
-    assert len(ends) == 2
-    x, y, origin, twin = grid(2)
+    assert len(found) == 2
+
+
+def test_what_a_float_cannot_tell_is_joined_exactly() -> None:
+    x, y, origin = grid(2)
     turned = (x + 1j * y) * np.exp(0.3j)
     x, y = turned.real.copy(), turned.imag.copy()
-    assert not merge_rings(x, y, origin, twin, order[order < len(twin)], 10)[2]
+    mesh = half_edges(x, y, origin, 12)
+    assert not join_triangles(x, y, origin, mesh, 10)[1]
+    found = pieces(_joined_exactly(x, y, origin, mesh, 10), mesh, origin, 12)
+    assert sum(len(p) - 2 for p in found) == 4
+    for piece in found:
+        for k in range(len(piece)):
+            assert exact_sign(x, y, piece[k - 2], piece[k - 1], piece[k]) >= 0
+    x, y, origin = grid(3)
+    mesh = half_edges(x, y, origin, 18)  # where floats are certain both are the same
+    exactly = _joined_exactly(x, y, origin, mesh, 6)
+    assert exactly.tolist() == join_triangles(x, y, origin, mesh, 6)[0].tolist()
 
 
 def test_a_run_of_vertices_is_straight_to_within_a_bound() -> None:
@@ -138,3 +205,31 @@ def test_vertices_that_are_kept() -> None:
     ring[1, 1] = 0.125
     assert np.flatnonzero(corners(*ring.T.copy(), 0, 0.125)).tolist() == [0, 3, 5, 7]
     assert 1 in np.flatnonzero(corners(*ring.T.copy(), 0, 0.0625))
+
+
+def test_the_sharpest_vertex_and_whether_all_are_kept() -> None:
+    ring = np.array([[0, 0], [2, 0], [3, 0.5], [3, 2], [0, 2]], float)
+    x, y = ring.T.copy()
+    begin, every = sharpest(x, y, 1e-9)
+    area = [
+        abs(np.linalg.det([ring[k - 4] - ring[k - 1], ring[k] - ring[k - 1]])) for k in range(5)
+    ]
+    assert every
+    assert begin == int(np.argmax(area))
+    low = np.array([[0, 0], [2, 0], [3, 0.125], [3, 2], [0, 2]], float)
+    off = 0.25 / np.hypot(3.0, 0.125)  # of vertex 1 from its neighbours' chord
+    assert sharpest(*low.T.copy(), 0.99 * off)[1]
+    assert not sharpest(*low.T.copy(), 1.01 * off)[1]
+    short = np.array([[0, 0], [2, 0], [2.5, 0.5], [3, 2], [0, 2]], float)
+    edge = np.hypot(0.5, 0.5)
+    assert not sharpest(*short.T.copy(), 1.0001 * edge)[1]
+    # back along its own edge: no area, and yet a corner
+    spike = np.array([[0, 0], [4, 0], [2, 0], [2, 2]], float)
+    assert sharpest(*spike.T.copy(), 0.25)[1]
+    onward = np.array([[0, 0], [2, 0], [4, 0], [2, 2]], float)
+    assert not sharpest(*onward.T.copy(), 0.25)[1]
+    # none of the two ends of a short edge begins
+    twin = np.array([[0, 0], [5, 0], [5, 1e-12], [5, 3], [0, 2]], float)
+    begin, every = sharpest(*twin.T.copy(), 1e-9)
+    assert not every
+    assert begin == 3
