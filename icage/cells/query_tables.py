@@ -19,12 +19,16 @@ from icage.cells.held_outside import HeldOutside, held_outside
 from icage.cells.membership import HELD, held_when_lost
 from icage.cells.work import CageWork, work_of
 from icage.geometry.near_frame import NearFrame
+from icage.kernels.tips import RIGHT, tips_of
 from icage.tolerance import COLLISION, LEVEL
 
 
 @dataclass(frozen=True, slots=True)
 class PieceTables:
     """Convex pieces: piece k has the corners and inward normals ``start[k]:start[k + 1]``.
+
+    A corner sharper than a right angle comes again, with the bisector for its normal: outside of a
+    piece these half planes say how far a point is beyond a tip.
 
     Attributes
     ----------
@@ -155,11 +159,14 @@ def _pieces(work: CageWork | None) -> PieceTables:
     if work is None:
         return PieceTables(np.zeros(1, dtype=np.int64), np.empty((0, 2)), np.empty((0, 2)))
     pieces = work.search.free_space.pieces
-    corner = pieces.slot_vertex
+    corner, tips = pieces.slot_vertex, tips_of(pieces, RIGHT)
+    after = np.repeat(pieces.ptr[1:], np.diff(tips.tip_ptr))
+    corners = np.column_stack([pieces.x[corner], pieces.y[corner]])
+    normals = np.column_stack([pieces.normal_x, pieces.normal_y])
     return PieceTables(
-        pieces.ptr,
-        np.column_stack([pieces.x[corner], pieces.y[corner]]),
-        np.column_stack([pieces.normal_x, pieces.normal_y]),
+        pieces.ptr + tips.tip_ptr,
+        np.insert(corners, after, np.column_stack([tips.tip_x, tips.tip_y]), axis=0),
+        np.insert(normals, after, np.column_stack([tips.tip_nx, tips.tip_ny]), axis=0),
     )
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from icage.arrays import FloatArray, IntArray
 from icage.geometry.exterior import exterior_pieces
 from icage.geometry.kernels.pieces import WALL
-from icage.geometry.tips import sharp_tips
 from icage.hand import HandShape
+from icage.kernels.tips import SHARP, tips_of
 from icage.outline import Outline
 
 CLIP: Final = 1e-13
@@ -38,7 +38,7 @@ class Surroundings(NamedTuple):
 
     Edge q runs counterclockwise from vertex q, with the object on its left. ``turn`` of pair i is
     the paper's R_{i,i+1} as a complex number: X = f_i + turn (f_{i+1} - f_i).
-    [Bunis2018, Sec. IV-B] ``tip_*`` are the sharp tips of the pieces (``geometry.tips``).
+    [Bunis2018, Sec. IV-B] ``tip_*`` are the sharp tips of the pieces (``kernels.tips``).
     """
 
     edge_x: FloatArray
@@ -108,7 +108,7 @@ def surroundings(
     turn = (hand.z[[2, 0, 1]] - hand.z) / ends
     unit = 1.0 / ends
     scale = outline.diameter
-    tips = sharp_tips(pieces)
+    tips = tips_of(pieces, SHARP)
     return Surroundings(
         edge_x=np.ascontiguousarray(ring[:, 0]),
         edge_y=np.ascontiguousarray(ring[:, 1]),

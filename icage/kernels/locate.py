@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.storage import hash_slot
+from icage.kernels.tips import RIGHT, tip_at
 
 _BESIDE = 1e-6
 """[square] A piece this close to a square of the grid is listed in it too: above the rounding of a
@@ -80,15 +81,36 @@ def build_buckets(pieces, low_x, low_y, size, side):
     return Buckets(start, items, low_x, low_y, size, side)
 
 
-@compiled
-def _slack(pieces, k, x, y):
-    """How far inside the half planes of piece k a point is."""
+@compiled_borrowing
+def _slack(pieces, k, x, y, enough):
+    """How far inside the half planes of piece k a point is; less than ``enough`` is enough said.
+
+    Outside by a little the half planes across its sharp tips count, too: two edges of a sliver are
+    near a point that is far beyond where they meet.
+    """
     least = np.inf
     for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
         v = pieces.slot_vertex[s]
         gap = pieces.normal_x[s] * (x - pieces.x[v]) + pieces.normal_y[s] * (y - pieces.y[v])
         least = min(least, gap)
+        if least < enough:
+            return least
+    if least >= 0.0:
+        return least
+    before = pieces.ptr[k + 1] - 1
+    for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
+        tip = tip_at(pieces, before, s, RIGHT)
+        if tip.sharp:
+            v = pieces.slot_vertex[s]
+            least = min(least, tip.n_x * (x - pieces.x[v]) + tip.n_y * (y - pieces.y[v]))
+        before = s
     return least
+
+
+@compiled_borrowing
+def holds(pieces, k, x, y, give):
+    """Whether a point is in piece k, or outside by at most about ``give``, beyond its tips too."""
+    return _slack(pieces, k, x, y, -give) >= -give
 
 
 @compiled
@@ -101,13 +123,13 @@ def locate(pieces, buckets, x, y, tolerance):
     found = -1
     if 0 <= i < side and 0 <= j < side:
         for at in range(start[i * side + j], start[i * side + j + 1]):
-            gap = _slack(pieces, buckets.items[at], x, y)
+            gap = _slack(pieces, buckets.items[at], x, y, best)
             if gap >= best:
                 best = gap
                 found = buckets.items[at]
         return found
     for k in range(len(pieces.ptr) - 1):
-        gap = _slack(pieces, k, x, y)
+        gap = _slack(pieces, k, x, y, best)
         if gap >= best:
             best = gap
             found = k

@@ -12,15 +12,21 @@ import pytest
 import shapely
 
 from icage.agreement import disagreements
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 from icage.cells.free_space import FreeSpace
-from icage.cells.kernels.largest import _holds as holds  # pyright: ignore[reportPrivateUsage]
+from icage.cells.kernels.facet import CLEARANCE, facet_of, middles_on_facets
+from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.plateau import translations
+from icage.cells.membership import query
+from icage.cells.query_tables import _pieces as piece_tables  # pyright: ignore[reportPrivateUsage]
 from icage.contact_space.exploration import Plane
+from icage.friction.kernels.polygon import keep_in_piece
 from icage.geometry.exterior import Pieces
-from icage.geometry.tips import SHARP, Tips, sharp_tips
 from icage.hand import HandShape
+from icage.kernels.locate import holds
+from icage.kernels.tips import SHARP, Tips, tips_of
 from icage.outline import Outline
+from icage.placement_class import PlacementCode
 from icage.planner import plan
 from icage.tolerance import SLIDE_GIVE
 
@@ -64,6 +70,14 @@ ON_STAR = [
 """Held at three concave corners, one of them cut by an edge of 2e-6: the hand there can do nothing,
 the one beside it is a cage."""
 
+SPIKED_CROSS = [
+    [1.0, 1.0], [0.0, 1.0], [0.0, 2.0], [-1.0, 2.0], [-1.0, 1.0], [-2.0, 1.0], [-2.0, 0.0],
+    [-1.0, 0.0], [-1.0, -1.0], [-1.0000000016950048, -1.0000000004583827], [1.0, -1.0],
+]  # fmt: skip
+ON_CROSS = [[0.0, 1.0], [-1.0, 0.0], [-1.0, -0.6599151468273772]]
+"""Finger 2 in the concave corner that is the tip of a sliver: a facet that is open by a hair only
+had a hand 1e-4 beyond it, a minimum that is none."""
+
 
 @pytest.mark.parametrize(
     ("ring", "contacts", "radius"),
@@ -72,8 +86,9 @@ the one beside it is a cage."""
         (CROWN, ON_CROWN, 0.0),
         (HOOK, ON_HOOK, TINY),
         (SPLIT_STAR, ON_STAR, 0.0),
+        (SPIKED_CROSS, ON_CROSS, 0.0),
     ],
-    ids=["slide", "region", "discs", "isolated"],
+    ids=["slide", "region", "discs", "isolated", "facet"],
 )
 def test_methods_agree_where_pieces_are_slivers(
     ring: list[list[float]], contacts: list[list[float]], radius: float
@@ -98,13 +113,10 @@ def spiked(angle: float, spin: float) -> tuple[Outline, FloatArray]:
 def test_a_hand_that_slides_stays_beside_its_pieces(angle: float, spin: float) -> None:
     outline, contacts = spiked(angle, spin)
     space = FreeSpace.around(outline, HandShape.from_contacts(contacts))
-    at = (contacts - space.origin) @ [1.0, 1j]
-    w = at[1] - at[0]
+    cells, w = cells_at(space, contacts)
     shapes = shapes_of(space.pieces)
-    near = [[k for k, p in enumerate(shapes) if p.distance(shapely.Point(a.real, a.imag)) < 1e-9]
-            for a in at]  # fmt: skip
     looked_at = 0
-    for cell in np.stack(np.meshgrid(*near, indexing="ij"), axis=-1).reshape(-1, 3):
+    for cell in cells:
         for x, y in translations(space.pieces, space.z, cell, w.real, w.imag):
             fingers = complex(x, y) + w * (space.z @ [1.0, 1j])
             for finger, k in zip(fingers, cell, strict=True):
@@ -153,13 +165,115 @@ def test_a_point_beyond_the_tip_of_a_sliver_is_not_in_it() -> None:
     assert seen
 
 
+@pytest.mark.parametrize("spin", [0.0, 2.9])
+@pytest.mark.parametrize("angle", [1e-3, 1e-6, 2e-8, 2e-9])
+def test_the_hand_of_a_pass_is_in_its_cell(angle: float, spin: float) -> None:
+    outline, contacts = spiked(angle, spin)
+    assert passes_in_their_cells(
+        FreeSpace.around(outline, HandShape.from_contacts(contacts)), contacts
+    )
+
+
+@pytest.mark.parametrize("spin", [0.0, 1.0, 2.9])
+def test_the_hand_of_a_pass_is_in_its_cell_though_the_facet_is_open_by_a_hair(spin: float) -> None:
+    turn = np.array([[math.cos(spin), math.sin(spin)], [-math.sin(spin), math.cos(spin)]])
+    outline, contacts = Outline(np.array(SPIKED_CROSS) @ turn), np.array(ON_CROSS) @ turn
+    assert passes_in_their_cells(
+        FreeSpace.around(outline, HandShape.from_contacts(contacts)), contacts
+    )
+
+
+def passes_in_their_cells(space: FreeSpace, contacts: FloatArray) -> int:
+    """How many passes there are at the contacts; none has a finger outside its piece."""
+    pieces, room, count = space.pieces, new_room(), 0
+    shapes = shapes_of(pieces)
+    for cell in cells_at(space, contacts)[0]:
+        for finger in range(len(cell)):
+            for slot in range(pieces.ptr[cell[finger]], pieces.ptr[cell[finger] + 1]):
+                facet = facet_of(pieces, cell, finger, slot)
+                low = pass_value(pieces, space.z, facet, space.cap, space.worst, room)
+                if low.sigma == math.inf:
+                    continue
+                hands = middles_on_facets(
+                    pieces, space.z, cell[None], np.array([finger]), np.array([slot]),
+                    np.array([[low.w_x, low.w_y]]),
+                )  # fmt: skip
+                at = hands[0] @ [1.0, 1j, 0.0, 0.0] + hands[0] @ [0.0, 0.0, 1.0, 1j] * (
+                    space.z @ [1.0, 1j]
+                )
+                for point, k in zip(at, cell, strict=True):
+                    off = shapes[k].distance(shapely.Point(point.real, point.imag))
+                    assert off <= 25.0 * CLEARANCE * pieces.diameter
+                count += 1
+    return count
+
+
+@pytest.mark.parametrize("angle", [1e-3, 1e-6, 2e-8])
+def test_a_finger_in_the_object_beyond_a_tip_collides(angle: float) -> None:
+    outline, contacts = spiked(angle, 0.0)
+    cage = plan(outline, contacts)
+    assert cage.work is not None
+    tips = spiked_tips(angle, 0.0)
+    body = shapely.Polygon(outline.vertices)
+    seen = 0
+    for x, y, nx, ny in zip(tips.tip_x, tips.tip_y, tips.tip_nx, tips.tip_ny, strict=True):
+        for beyond in (1e-7, 1e-5, 1e-3):
+            finger = np.array([x - beyond * nx, y - beyond * ny])
+            finger = finger + cage.work.search.free_space.origin
+            if not shapely.buffer(body, -1e-8).contains(shapely.Point(finger)):
+                continue
+            for theta in np.linspace(0.0, 6.0, 7):
+                assert (
+                    query(cage, np.array([[*finger, theta, 0.3 * cage.sigma_0]])).verdict[0]
+                    == PlacementCode.COLLISION
+                )
+            seen += 1
+    assert seen
+
+
+@pytest.mark.parametrize("angle", [1e-3, 1e-6, 2e-8])
+def test_the_tables_of_a_page_hold_what_the_planner_holds(angle: float) -> None:
+    outline, contacts = spiked(angle, 2.9)
+    work = plan(outline, contacts).work
+    assert work is not None
+    tables, tips = piece_tables(work), spiked_tips(angle, 2.9)
+    tolerance, seen = 1e-9 * outline.diameter, 0
+    for k in range(work.search.free_space.pieces.total):
+        rows = slice(tables.start[k], tables.start[k + 1])
+        for tip in range(tips.tip_ptr[k], tips.tip_ptr[k + 1]):
+            for beyond in (-0.5, 0.5, 2.0, 1e5):
+                x = tips.tip_x[tip] - beyond * tolerance * tips.tip_nx[tip]
+                y = tips.tip_y[tip] - beyond * tolerance * tips.tip_ny[tip]
+                gaps = (tables.normals[rows] * ([x, y] - tables.corners[rows])).sum(axis=1)
+                assert (gaps.min() >= -tolerance) == (beyond < 1.0)
+                seen += 1
+    assert seen
+
+
+@pytest.mark.parametrize("angle", [1e-3, 1e-6, 2e-8])
+def test_a_finger_of_a_jam_stays_beside_its_sliver(angle: float) -> None:
+    outline, pieces, tips = spiked_pieces(angle)
+    loose, seen = 1e-9 * outline.diameter, 0
+    for k, shape in enumerate(shapes_of(pieces)):
+        for tip in range(tips.tip_ptr[k], tips.tip_ptr[k + 1]):
+            polygon, spare = np.zeros((64, 4)), np.empty((64, 4))
+            around = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+            polygon[:4, :2] = around + [tips.tip_x[tip], tips.tip_y[tip]]
+            n = keep_in_piece(pieces, k, np.zeros(2), loose, np.empty(5), polygon, 4, spare)
+            assert n >= 3
+            for x, y in polygon[:n, :2]:
+                assert shape.distance(shapely.Point(x, y)) <= 25.0 * loose
+            seen += 1
+    assert seen
+
+
 def test_tips_are_where_a_piece_is_sharp() -> None:
     _, pieces, tips = spiked_pieces(1e-3)
     for k, shape in enumerate(shapes_of(pieces)):
         ring = shapely.get_coordinates(shape.exterior)[:-1]
         ahead, back = np.roll(ring, -1, axis=0) - ring, np.roll(ring, 1, axis=0) - ring
         way = (ahead @ [1.0, 1j]) / (back @ [1.0, 1j])
-        sharp = ring[np.abs(np.angle(way)) < SHARP]
+        sharp = ring[np.abs(np.angle(way)) < 0.1]
         a, b = tips.tip_ptr[k : k + 2]
         assert np.column_stack([tips.tip_x[a:b], tips.tip_y[a:b]]).tolist() == sharp.tolist()
         inside = (ring[:, None] - np.column_stack([tips.tip_x, tips.tip_y])[a:b]) * np.column_stack(
@@ -168,11 +282,27 @@ def test_tips_are_where_a_piece_is_sharp() -> None:
         assert (inside.sum(axis=2) >= 0.0).all()
 
 
+def cells_at(space: FreeSpace, contacts: FloatArray) -> tuple[IntArray, complex]:
+    """The cells (n, fingers) that meet at the contacts, and w there."""
+    at = (contacts - space.origin) @ [1.0, 1j]
+    near = [[k for k, p in enumerate(shapes_of(space.pieces))
+             if p.distance(shapely.Point(a.real, a.imag)) < 1e-9] for a in at]  # fmt: skip
+    cells = np.stack(np.meshgrid(*near, indexing="ij"), axis=-1).reshape(-1, len(at))
+    return cells, complex(at[1] - at[0])
+
+
+def spiked_tips(angle: float, spin: float) -> Tips:
+    """The tips of the pieces round the object with its needle."""
+    outline, contacts = spiked(angle, spin)
+    pieces = FreeSpace.around(outline, HandShape.from_contacts(contacts)).pieces
+    return tips_of(pieces, SHARP)
+
+
 def spiked_pieces(angle: float) -> tuple[Outline, Pieces, Tips]:
     """The object with its needle, the pieces round it, and their tips."""
     outline, contacts = spiked(angle, 2.9)
     pieces = FreeSpace.around(outline, HandShape.from_contacts(contacts)).pieces
-    return outline, pieces, sharp_tips(pieces)
+    return outline, pieces, tips_of(pieces, SHARP)
 
 
 def shapes_of(pieces: Pieces) -> list[shapely.Polygon]:

@@ -16,6 +16,7 @@ from icage.cells.kernels.facet import MAX_BASE, MAX_ROWS
 from icage.cells.kernels.min_norm import INFEASIBLE, LeastNorm, min_norm_careful
 from icage.kernels import double_double as dd
 from icage.kernels.compiled import compiled, compiled_borrowing
+from icage.kernels.tips import SHARP, tip_at
 
 _CAREFUL_SLACK = 1e-24
 """[diameter] In double-double a row may be violated by this: above rounding at 1e-32 of lengths
@@ -38,11 +39,15 @@ class _CarefulVector(NamedTuple):
 
 
 @compiled_borrowing
-def _careful_rows(pieces, z, facet, side, finger, piece, base, count):
-    """Append the half planes of one finger's piece; ``side`` is the segment, not of length 1."""
+def _careful_rows(pieces, z, facet, side, finger, piece, across_tips, base, count):
+    """Append the half planes of one finger's piece, those across its sharp tips if asked for.
+
+    ``side`` is the segment, not of length 1.
+    """
     vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
     uxh, uxl = dd.two_sum(z[finger, 0], -z[facet.finger, 0])
     uyh, uyl = dd.two_sum(z[finger, 1], -z[facet.finger, 1])
+    u = _CarefulVector(uxh, uxl, uyh, uyl)
     for s in range(ptr[piece], ptr[piece + 1]):
         a = slot_vertex[s]
         b = slot_vertex[s + 1 if s + 1 < ptr[piece + 1] else ptr[piece]]
@@ -52,27 +57,46 @@ def _careful_rows(pieces, z, facet, side, finger, piece, base, count):
         inv = 1.0 / math.sqrt(nxh * nxh + nyh * nyh)
         nxh, nxl = dd.scale(nxh, nxl, inv)
         nyh, nyl = dd.scale(nyh, nyl, inv)
-        base[count, _C_GX], base[count, _C_GX + 1] = dd.dot(uxh, uxl, uyh, uyl, nxh, nxl, nyh, nyl)
-        base[count, _C_GY], base[count, _C_GY + 1] = dd.dot(
-            uxh, uxl, -uyh, -uyl, nyh, nyl, nxh, nxl
-        )
-        base[count, _C_ALONG], base[count, _C_ALONG + 1] = dd.dot(
-            nxh, nxl, nyh, nyl, side.x_hi, side.x_lo, side.y_hi, side.y_lo
-        )
-        dxh, dxl = dd.two_sum(vx[a], -vx[facet.start])
-        dyh, dyl = dd.two_sum(vy[a], -vy[facet.start])
-        base[count, _C_BOUND], base[count, _C_BOUND + 1] = dd.dot(
-            nxh, nxl, nyh, nyl, dxh, dxl, dyh, dyl
-        )
+        n = _CarefulVector(nxh, nxl, nyh, nyl)
+        _careful_row(pieces, facet, side, u, n, a, base, count)
         count += 1
+    if across_tips:
+        before = ptr[piece + 1] - 1
+        for s in range(ptr[piece], ptr[piece + 1]):
+            tip = tip_at(pieces, before, s, SHARP)
+            if tip.sharp:  # the direction of such a half plane need not be exact
+                n = _CarefulVector(tip.n_x, 0.0, tip.n_y, 0.0)
+                _careful_row(pieces, facet, side, u, n, slot_vertex[s], base, count)
+                count += 1
+            before = s
     return count
+
+
+@compiled_borrowing
+def _careful_row(pieces, facet, side, u, n, a, base, count):
+    """The half plane through vertex ``a``, of normal n, for the finger at u from the facet's."""
+    base[count, _C_GX], base[count, _C_GX + 1] = dd.dot(
+        u.x_hi, u.x_lo, u.y_hi, u.y_lo, n.x_hi, n.x_lo, n.y_hi, n.y_lo
+    )
+    base[count, _C_GY], base[count, _C_GY + 1] = dd.dot(
+        u.x_hi, u.x_lo, -u.y_hi, -u.y_lo, n.y_hi, n.y_lo, n.x_hi, n.x_lo
+    )
+    base[count, _C_ALONG], base[count, _C_ALONG + 1] = dd.dot(
+        n.x_hi, n.x_lo, n.y_hi, n.y_lo, side.x_hi, side.x_lo, side.y_hi, side.y_lo
+    )
+    dxh, dxl = dd.two_sum(pieces.x[a], -pieces.x[facet.start])
+    dyh, dyl = dd.two_sum(pieces.y[a], -pieces.y[facet.start])
+    base[count, _C_BOUND], base[count, _C_BOUND + 1] = dd.dot(
+        n.x_hi, n.x_lo, n.y_hi, n.y_lo, dxh, dxl, dyh, dyl
+    )
 
 
 @compiled
 def pass_careful(pieces, z, facet, cap, give):
     """The least norm in double-double; here tau runs over [0, 1].
 
-    ``give`` moves every edge of the pieces outward.
+    ``give`` moves every edge of the pieces outward; where edges meet in a sharp tip that would move
+    the tip much further than them, but for one more half plane across it.
     """
     base = np.empty((MAX_BASE, 8))
     rows = np.empty((MAX_ROWS, 6))
@@ -80,8 +104,9 @@ def pass_careful(pieces, z, facet, cap, give):
     x_hi, x_lo = dd.two_sum(pieces.x[facet.end], -pieces.x[facet.start])
     y_hi, y_lo = dd.two_sum(pieces.y[facet.end], -pieces.y[facet.start])
     side = _CarefulVector(x_hi, x_lo, y_hi, y_lo)
-    n = _careful_rows(pieces, z, facet, side, facet.second, facet.second_piece, base, 0)
-    n = _careful_rows(pieces, z, facet, side, facet.third, facet.third_piece, base, n)
+    tips = give > 0.0
+    n = _careful_rows(pieces, z, facet, side, facet.second, facet.second_piece, tips, base, 0)
+    n = _careful_rows(pieces, z, facet, side, facet.third, facet.third_piece, tips, base, n)
     for a in range(n):
         base[a, _C_BOUND], base[a, _C_BOUND + 1] = dd.sub(
             base[a, _C_BOUND], base[a, _C_BOUND + 1], give, 0.0

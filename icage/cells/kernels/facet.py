@@ -13,12 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.kernels.compiled import compiled, compiled_borrowing
+from icage.kernels.tips import MOST_TIPS, SHARP, tip_at
 
 MAX_EDGES = 12
 """Most edges of a merged piece: bounds the number of rows below."""
 
-MAX_BASE = 2 * MAX_EDGES + 2
-MAX_ROWS = (MAX_EDGES + 2) * (MAX_EDGES + 2) + MAX_BASE
+MAX_BASE = 2 * (MAX_EDGES + MOST_TIPS) + 2
+"""Half planes of both other fingers, across tips too, and the ends of the segment."""
+
+MAX_ROWS = MAX_BASE * MAX_BASE // 4 + MAX_BASE
+"""Pairs of those that bound a finger from below and from above, and those that do neither."""
+
 EPS = 2.220446049250313e-16
 """[1] The last place of a double."""
 
@@ -95,10 +100,29 @@ def segment_of(pieces, facet):
 
 
 @compiled_borrowing
+def _put_row(pieces, segment, ux, uy, nx, ny, s, base, count):
+    """The half plane through the corner where slot ``s`` begins, of normal n, for the finger at u
+    from the one on the segment.
+    """
+    a = pieces.slot_vertex[s]
+    dx = pieces.x[a] - segment.x
+    dy = pieces.y[a] - segment.y
+    base[count, G_X] = ux * nx + uy * ny
+    base[count, G_Y] = ux * ny - uy * nx
+    base[count, ALONG] = nx * segment.e_x + ny * segment.e_y
+    base[count, BOUND] = nx * dx + ny * dy
+    far = abs(dx) + abs(dy) + pieces.scale * (abs(ux) + abs(uy)) + segment.length
+    rounding = 8.0 * EPS * far
+    base[count, ERROR], base[count, ROUNDING] = CLEARANCE * pieces.scale + rounding, rounding
+
+
+@compiled_borrowing
 def rows_of_others(pieces, z, facet, segment, base):
-    """The half planes of both other fingers' pieces; returns how many."""
-    vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
-    normal_x, normal_y, scale = pieces.normal_x, pieces.normal_y, pieces.scale
+    """The half planes of both other fingers' pieces; returns how many.
+
+    None across sharp tips: what gives way by more than rounding is decided in ``careful``, which
+    has them.
+    """
     count = 0
     for other in range(2):
         finger, piece = facet.second, facet.second_piece
@@ -106,20 +130,30 @@ def rows_of_others(pieces, z, facet, segment, base):
             finger, piece = facet.third, facet.third_piece
         ux = z[finger, 0] - z[facet.finger, 0]
         uy = z[finger, 1] - z[facet.finger, 1]
-        size = abs(ux) + abs(uy)
-        for s in range(ptr[piece], ptr[piece + 1]):
-            nx = normal_x[s]
-            ny = normal_y[s]
-            a = slot_vertex[s]
-            dx = vx[a] - segment.x
-            dy = vy[a] - segment.y
-            base[count, G_X] = ux * nx + uy * ny
-            base[count, G_Y] = ux * ny - uy * nx
-            base[count, ALONG] = nx * segment.e_x + ny * segment.e_y
-            base[count, BOUND] = nx * dx + ny * dy
-            rounding = 8.0 * EPS * (abs(dx) + abs(dy) + scale * size + segment.length)
-            base[count, ERROR], base[count, ROUNDING] = CLEARANCE * scale + rounding, rounding
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            _put_row(
+                pieces, segment, ux, uy, pieces.normal_x[s], pieces.normal_y[s], s, base, count
+            )
             count += 1
+    return count
+
+
+@compiled_borrowing
+def _rows_of_tips(pieces, z, facet, segment, base, count):
+    """Append the half planes across the sharp tips of these pieces; returns how many there are."""
+    for other in range(2):
+        finger, piece = facet.second, facet.second_piece
+        if other == 1:
+            finger, piece = facet.third, facet.third_piece
+        ux = z[finger, 0] - z[facet.finger, 0]
+        uy = z[finger, 1] - z[facet.finger, 1]
+        before = pieces.ptr[piece + 1] - 1
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            tip = tip_at(pieces, before, s, SHARP)
+            if tip.sharp:
+                _put_row(pieces, segment, ux, uy, tip.n_x, tip.n_y, s, base, count)
+                count += 1
+            before = s
     return count
 
 
@@ -128,6 +162,7 @@ def finger_on_segment(pieces, z, facet, wx, wy, base):
     """Where the finger of a facet may be along its segment for a given w."""
     segment = segment_of(pieces, facet)
     n = rows_of_others(pieces, z, facet, segment, base)
+    n = _rows_of_tips(pieces, z, facet, segment, base, n)
     lo = 0.0
     hi = segment.length
     for a in range(n):

@@ -7,28 +7,12 @@ import math
 
 import numpy as np
 
-from icage.cells.kernels.plateau import sharp_tip
 from icage.kernels.compiled import compiled
+from icage.kernels.locate import holds
 
 _INSIDE = 1e-9
 """[diameter] A point this far outside a piece is in it: the rounding of w, divided by the sine of
 the angle between two edges."""
-
-
-@compiled
-def _holds(pieces, k, x, y, give):
-    """Whether a point is in piece k, or outside by at most ``give``, beyond sharp tips too."""
-    before = pieces.ptr[k + 1] - 1
-    for s in range(pieces.ptr[k], pieces.ptr[k + 1]):
-        v = pieces.slot_vertex[s]
-        gap = pieces.normal_x[s] * (x - pieces.x[v]) + pieces.normal_y[s] * (y - pieces.y[v])
-        if gap < -give:
-            return False
-        sharp, nx, ny = sharp_tip(pieces, before, s)
-        if sharp and nx * (x - pieces.x[v]) + ny * (y - pieces.y[v]) < -give:
-            return False
-        before = s
-    return True
 
 
 @compiled
@@ -47,7 +31,7 @@ def _two_at_corners(pieces, z, cell, i, give, best):
             sigma = math.sqrt(wx * wx + wy * wy)
             if sigma <= best:
                 continue
-            if _holds(pieces, cell[k], ax + wx * vx - wy * vy, ay + wx * vy + wy * vx, give):
+            if holds(pieces, cell[k], ax + wx * vx - wy * vy, ay + wx * vy + wy * vx, give):
                 best = sigma
     return best
 
@@ -80,9 +64,9 @@ def _one_at_a_corner(pieces, z, cell, i, give, best):
                 sigma = math.sqrt(wx * wx + wy * wy)
                 if not best < sigma < np.inf:
                     continue
-                if _holds(
+                if holds(
                     pieces, cell[j], ax + wx * ux - wy * uy, ay + wx * uy + wy * ux, give
-                ) and _holds(pieces, cell[k], ax + wx * vx - wy * vy, ay + wx * vy + wy * vx, give):
+                ) and holds(pieces, cell[k], ax + wx * vx - wy * vy, ay + wx * vy + wy * vx, give):
                     best = sigma
     return best
 

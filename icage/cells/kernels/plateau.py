@@ -3,7 +3,6 @@
 # pyright: basic
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from icage.cells.kernels.columns import BIRTH_SIGMA
 from icage.cells.kernels.near import Hand, cells_near
 from icage.cells.kernels.tree import births
 from icage.kernels.compiled import compiled
+from icage.kernels.tips import RIGHT, tip_at
 from icage.tolerance import DEPTH_CUT, PLATEAU, SAME_POINT, SLIDE_GIVE
 
 _STEPS = 10
@@ -48,23 +48,6 @@ def _cut(corners, count, ax, ay, nx, ny, give, out):
 
 
 @compiled
-def sharp_tip(pieces, before, s):
-    """Where two edges of a piece meet in less than a right angle, and the unit bisector into it.
-
-    Half planes that give a little reach far beyond a sharp tip: (the tip is sharp, n_x, n_y) of one
-    more, across it, that does not.
-    """
-    # of an inward normal n the edge runs along (n_y, -n_x)
-    x = pieces.normal_y[s] - pieces.normal_y[before]
-    y = pieces.normal_x[before] - pieces.normal_x[s]
-    square = x * x + y * y
-    if square <= 2.0:
-        return False, 0.0, 0.0
-    length = math.sqrt(square)
-    return True, x / length, y / length
-
-
-@compiled
 def translations(pieces, z, cell, wx, wy):
     """Corners d (n, 2) of the convex set of hands in a cell that have this very w.
 
@@ -92,10 +75,17 @@ def translations(pieces, z, cell, wx, wy):
                 pieces.normal_x[s], pieces.normal_y[s], give, other,
             )  # fmt: skip
             corners, other = other, corners
-            sharp, nx, ny = sharp_tip(pieces, before, s)
-            if sharp:
+            tip = tip_at(pieces, before, s, RIGHT)
+            if tip.sharp:
                 count = _cut(
-                    corners, count, pieces.x[v] - fx, pieces.y[v] - fy, nx, ny, give, other
+                    corners,
+                    count,
+                    pieces.x[v] - fx,
+                    pieces.y[v] - fy,
+                    tip.n_x,
+                    tip.n_y,
+                    give,
+                    other,
                 )
                 corners, other = other, corners
             before = s

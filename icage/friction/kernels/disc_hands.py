@@ -14,7 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.friction.kernels.disc_features import ARC
-from icage.friction.kernels.polygon import finger_row, keep, keep_near, put_hands_of_two
+from icage.friction.kernels.polygon import (
+    finger_row,
+    keep,
+    keep_in_piece,
+    keep_near,
+    put_hands_of_two,
+)
 from icage.kernels.compiled import compiled
 
 OUTSIDE = 3
@@ -99,16 +105,9 @@ def hands_on(pieces, z, cell, finger, chosen, count, contacts, state, slack, thi
         if n == 0:
             return 0
     for f in range(len(z)):
-        piece = cell[f]
-        for slot in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
-            v = pieces.slot_vertex[slot]
-            n_x = pieces.normal_x[slot]
-            n_y = pieces.normal_y[slot]
-            finger_row(row, n_x, n_y, z[f, 0], z[f, 1])
-            row[4] = loose - n_x * pieces.x[v] - n_y * pieces.y[v]
-            n = keep(polygon, n, row, spare)
-            if n == 0:
-                return 0
+        n = keep_in_piece(pieces, cell[f], z[f], loose, row, polygon, n, spare)
+        if n == 0:
+            return 0
         for k in range(OUTSIDE):
             if state[f, 2 + 3 * k] >= 0.0:
                 n = _held_off(z[f], contacts, state[f], k, loose, row, polygon, n, spare)

@@ -16,7 +16,7 @@ import numpy as np
 
 from icage.friction.kernels.balance import EVERYTHING, NOTHING, balancing
 from icage.friction.kernels.goal import cheapest
-from icage.friction.kernels.polygon import finger_row, keep, keep_near, put_hands_of_two
+from icage.friction.kernels.polygon import keep, keep_in_piece, keep_near, put_hands_of_two
 from icage.kernels.compiled import compiled
 
 _ROOM = 96
@@ -132,14 +132,7 @@ def _hands_on(pieces, z, cell, finger, chosen, count, contacts, thick, polygon, 
                 n = keep_near(contacts.place[chosen[touching]], z[f], thick, row, polygon, n, spare)
             touching += 1
         else:
-            piece = cell[f]
-            for slot in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
-                v = pieces.slot_vertex[slot]
-                n_x = pieces.normal_x[slot]
-                n_y = pieces.normal_y[slot]
-                finger_row(row, n_x, n_y, z[f, 0], z[f, 1])
-                row[4] = thick - n_x * pieces.x[v] - n_y * pieces.y[v]
-                n = keep(polygon, n, row, spare)
+            n = keep_in_piece(pieces, cell[f], z[f], thick, row, polygon, n, spare)
         if n == 0:
             return 0
     return n

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from icage.kernels.compiled import compiled
+from icage.kernels.tips import SHARP, tip_at
 
 
 @compiled
@@ -100,6 +101,27 @@ def keep_near(place, z, loose, row, polygon, n, spare):
         if k == 1:
             row[4] += length
         n = keep(polygon, n, row, spare)
+    return n
+
+
+@compiled
+def keep_in_piece(pieces, piece, z, loose, row, polygon, n, spare):
+    """Keep the hands whose finger at z is in a piece, or ``loose`` off, beyond sharp tips too."""
+    before = pieces.ptr[piece + 1] - 1
+    for slot in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+        v = pieces.slot_vertex[slot]
+        n_x, n_y = pieces.normal_x[slot], pieces.normal_y[slot]
+        finger_row(row, n_x, n_y, z[0], z[1])
+        row[4] = loose - n_x * pieces.x[v] - n_y * pieces.y[v]
+        n = keep(polygon, n, row, spare)
+        tip = tip_at(pieces, before, slot, SHARP)
+        if n and tip.sharp:
+            finger_row(row, tip.n_x, tip.n_y, z[0], z[1])
+            row[4] = loose - tip.n_x * pieces.x[v] - tip.n_y * pieces.y[v]
+            n = keep(polygon, n, row, spare)
+        if n == 0:
+            return 0
+        before = slot
     return n
 
 

@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from icage.kernels.compiled import compiled_borrowing
+from icage.kernels.locate import holds
 from icage.placing.kernels.edges import AX, AY, LENGTH, TX, TY, distance_to_edge, nearest
 
 EACH = 6
@@ -62,12 +63,8 @@ def in_cell(pieces, cell, arm, hand, finger, slack):
     """Whether all fingers of a hand are in the pieces of a cell, or no further out than slack."""
     for k in range(len(arm)):
         place_finger(arm, k, hand, finger)
-        for s in range(pieces.ptr[cell[k]], pieces.ptr[cell[k] + 1]):
-            v = pieces.slot_vertex[s]
-            gap = pieces.normal_x[s] * (finger[0] - pieces.x[v])
-            gap += pieces.normal_y[s] * (finger[1] - pieces.y[v])
-            if gap < -slack:
-                return False
+        if not holds(pieces, cell[k], finger[0], finger[1], slack):
+            return False
     return True
 
 

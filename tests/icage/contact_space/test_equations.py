@@ -14,7 +14,7 @@ from icage.contact_space.free_regions import exterior_rings, regions_of_rectangl
 from icage.contact_space.kernels.rectangle import least_on_edge, scale_at, third_finger
 from icage.contact_space.nodes import lambda_crit, nodes_of_region
 from icage.contact_space.obstacles import interior_pieces, obstacles, rectangle_obstacle
-from icage.contact_space.sectors import common_area, concurrency_point, sector_at
+from icage.contact_space.sectors import _CORNER, common_area, concurrency_point, sector_at
 from icage.contact_space.third_finger import Parallelogram
 from icage.errors import GeometryError
 from icage.hand import HandShape
@@ -252,6 +252,34 @@ def test_two_finger_grasps_of_a_notched_plate():
     assert [g.contacts.tolist() for g in notch] == [[[2.0, 0.0], [2.0, 1.0]]]
     widths = sorted(round(g.width, 9) for g in found if g.kind == "parallel edges")
     assert widths == [2.0, 2.0, 4.0]
+
+
+@pytest.mark.parametrize("first", range(7))
+def test_two_finger_grasps_do_not_hang_on_where_the_outline_begins(first: int):
+    ring = np.array([[0, 0], [4, 0], [4, 2], [3, 2], [2, 1], [1, 2], [0, 2]], dtype=np.float64)
+    found = pair_grasps(Boundary.of(Outline(np.roll(ring, first, axis=0))))
+    wanted = pair_grasps(Boundary.of(Outline(ring)))
+    assert {(g.kind, round(g.width, 9)) for g in found} == {
+        (g.kind, round(g.width, 9)) for g in wanted
+    }
+    assert len(found) == len(wanted)
+
+
+def test_a_contact_beside_a_vertex_has_the_sector_of_the_vertex():
+    ring = np.array([[0, 0], [4, 0], [4, 2], [3, 2], [2, 1], [1, 2], [0, 2]], dtype=np.float64)
+    boundary = Boundary.of(Outline(ring))
+    aside = 0.5 * _CORNER * boundary.perimeter
+    for k, vertex in enumerate(boundary.start):
+        for way in (boundary.tangent[k], -boundary.tangent[k - 1]):
+            for off in (0.0, aside):
+                sector = sector_at(boundary, vertex + off * way, 1.0)
+                assert sector is not None
+                assert sector.vertex
+                assert sector.contact.tolist() == vertex.tolist()
+                assert sector.convex == (vertex.tolist() != [2.0, 1.0])
+            beyond = sector_at(boundary, vertex + 3.0 * aside * way, 1.0)
+            assert beyond is not None
+            assert not beyond.vertex
 
 
 @pytest.mark.parametrize("seed", SEEDS)

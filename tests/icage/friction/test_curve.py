@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import icage
 from icage.cage import Cage
 from icage.errors import InputError, PlacementError
+from icage.friction.curve import _fall
 from icage.outline import Outline
 from icage.planner import plan
 from models import CASES
@@ -76,6 +78,20 @@ def test_mu_max_is_the_curve_read_the_other_way() -> None:
             assert level(cage.friction(most)) > opening * (1.0 - SAME)
             if most < curve.largest:
                 assert level(cage.friction(most + 2e-9)) <= opening * (1.0 + SAME)
+
+
+def test_the_fall_of_an_interval_is_a_share_of_its_higher_end() -> None:
+    some = plan(TRIANGLE, MIDDLES).friction(0.0)
+
+    def fall(before: float | None, after: float | None) -> float:
+        a, b = replace(some, sigma_first=before), replace(some, mu=0.25, sigma_first=after)
+        size, low, high, bent = _fall(a, b, 0.125)
+        assert (low, high, bent) == (0.0, 0.25, 0.125)
+        return -size
+
+    assert fall(2.0, 1.5) == 0.25
+    assert fall(2.0, 2.0) == fall(None, None) == 0.0
+    assert fall(None, 1.5) == 1.0
 
 
 def test_a_triangle_may_stop_turned_by_the_cone() -> None:

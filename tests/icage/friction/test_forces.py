@@ -47,6 +47,16 @@ def test_a_limiting_jam_is_held(seed: int) -> None:
         assert f[0] * left[1] - f[1] * left[0] >= -slack
 
 
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_what_a_finger_touches_does_not_hang_on_the_unit(unit: float) -> None:
+    """Fingers 1 and 2 in the middles of two sides, each with one side to push on."""
+    at = unit * np.array([[0.5, 0.0], [0.75, 0.1875**0.5], [0.25, 0.1875**0.5]])
+    cage = plan(unit * np.array([[0, 0], [1, 0], [0.5, 0.75**0.5]]), at)
+    held = jam_forces(cage, Jam((1, 2), at, 0.5 * unit), 1.0)
+    assert [c.finger for c in held.contacts] == [1, 2]
+    assert np.array([c.at for c in held.contacts]) == pytest.approx(at[:2], rel=1e-9, abs=1e-9)
+
+
 def test_less_friction_does_not_hold_what_more_does() -> None:
     """Fingers 1 and 2 on two sides of a regular triangle: their line is 30 degrees off both
     normals, so they hold from mu = tan 30 degrees on."""

@@ -57,6 +57,7 @@ def test_the_opening_is_that_of_scipys_solver(count: int, square: bool):
         assert kinds["held"] >= 5
 
 
+@pytest.mark.filterwarnings("error")
 def test_no_hand_is_smaller_to_rounding():
     """Some rows that are met exactly balance w: all others are further off."""
     rng = np.random.default_rng(0)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from icage.grasps.evaluator import GraspEvaluator
 from icage.grasps.features import EDGE, VERTEX, balanced_triples, features_of
 from icage.grasps.kernels.hands import HandLimits
+from icage.grasps.wanted import ANY_HAND, Wanted
 from icage.outline import Outline
+from tests.icage.grasps.small_outlines import DISC_SHAPES, RADIUS, SMALL
 from tests.oracles.geometry import Floats, Ring, unit_hand
 from tests.oracles.grasps import APART, carriers, counterclockwise, grid_grasps
 from tests.oracles.polygons import FAMILIES
@@ -153,3 +157,26 @@ def test_counterclockwise_is_so_in_the_oracle() -> None:
     points = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
     assert unit_hand(counterclockwise(points))[2].imag > 0.0
     assert math.isclose(abs(unit_hand(points)[2]), 1.0)
+
+
+@pytest.mark.parametrize("name", DISC_SHAPES)
+def test_grasps_of_one_polygon_stand_on_features_of_another(name: str) -> None:
+    """Of the offset drawn with more segments: corners of chords, but the same edges and arcs."""
+    outline = Outline(SMALL[name])
+    radius = RADIUS * outline.diameter
+    rough = GraspEvaluator(outline, radius, Wanted(limits=ANY_HAND))
+    fine = GraspEvaluator(outline, radius, Wanted(limits=ANY_HAND), segments=16)
+    triples, points = rough.triples()
+    found = rough.grasps(triples, points)
+    assert len(found)
+    same, at = rough.on_features(found)
+    assert same.tolist() == found.triples.tolist()
+    assert at.tolist() == found.points.tolist()
+    triples, at = fine.on_features(found)
+    assert at.tolist() == found.points.tolist()
+    feet = fine.features.feet(at)
+    for finger in range(3):
+        stands = feet[np.arange(len(at)), triples[:, finger]]
+        assert np.abs(stands - found.contacts[:, finger]).max() <= 0.1 * radius
+    away = replace(found, contacts=found.contacts + [0.0, 3.0 * outline.diameter])
+    assert len(fine.on_features(away)[0]) == 0
