@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray, read_only
+from icage.cells.free_space import Configuration
 from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.facet import middles_on_facets
 from icage.cells.kernels.plateau import translations
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 _PUSHED: Final = 1e-5
 """[1] Share of the motor's pull that does not drive a hand on: fingers a hair (``wedge.FIT``)
 thicker or thinner may take it away."""
+
+_NEARLY: Final = 0.1
+"""[1] The same on chords in place of arcs, whose normals are off by half of what a chord turns."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,27 +79,34 @@ def brink_of(cage: Cage, work: CageWork) -> Brink | None:
 
 
 def _on_edges(cage: Cage, work: CageWork, nodes: IntArray, level: FloatArray) -> Iterator[Brink]:
-    """Hands of point fingers at rest, of these nodes (n,) with their levels (n,) [unit]."""
-    free_space, tree = work.search.free_space, work.tree
+    """Hands of point fingers that balance, of these nodes (n,) with their levels (n,) [unit]."""
+    free_space = work.search.free_space
     pieces, z = free_space.pieces, free_space.z
-    least = tree.birth[nodes, BIRTH_SIGMA]
     # a hand as small as the target is the target
-    above = least > cage.sigma_0 + DEPTH_CUT * pieces.diameter
+    above = work.tree.birth[nodes, BIRTH_SIGMA] > cage.sigma_0 + DEPTH_CUT * pieces.diameter
     nodes, level = nodes[above], level[above]
-    cells = np.ascontiguousarray(work.search.cells[nodes])
-    w = np.ascontiguousarray(tree.birth[nodes, BIRTH_WX:])
-    where = tree.birth_at[nodes]
-    hands = middles_on_facets(pieces, z, cells, where[:, BORN_FINGER], where[:, BORN_SLOT], w)
-    share = unpushed(pieces, z, cells, hands, *_hollow_corners(pieces))
+    hands, share = _least_and_unpushed(work, nodes)
     frame = NearFrame.of(cage.outline)
     for k in np.flatnonzero(share <= _PUSHED).tolist():
-        corners = translations(pieces, z, cells[k], w[k, 0], w[k, 1])
+        d_x, d_y, w_x, w_y = hands[k].tolist()
+        cell = np.ascontiguousarray(work.search.cells[nodes[k]])
+        corners = translations(pieces, z, cell, w_x, w_y)
         if len(corners) and np.ptp(corners, axis=0).max() > PLATEAU * pieces.diameter:
             continue  # it slides: a shelf
-        d, own = complex(*hands[k, :2].tolist()), complex(*w[k].tolist())
-        fingers = d + own * free_space.hand.z
-        near = np.column_stack([fingers.real, fingers.imag]) + free_space.origin
-        yield Brink(float(level[k]), frame.back(near))
+        at = Configuration(complex(d_x, d_y), complex(w_x, w_y))
+        yield Brink(float(level[k]), frame.back(free_space.contacts(at)))
+
+
+def _least_and_unpushed(work: CageWork, nodes: IntArray) -> tuple[FloatArray, FloatArray]:
+    """The least hands (n, 4) of nodes, and the shares (n,) of the motor's pull that drive them."""
+    free_space, tree = work.search.free_space, work.tree
+    pieces, z = free_space.pieces, free_space.z
+    cells = np.ascontiguousarray(work.search.cells[nodes])
+    hands = middles_on_facets(
+        pieces, z, cells, tree.birth_at[nodes, BORN_FINGER], tree.birth_at[nodes, BORN_SLOT],
+        tree.birth[nodes, BIRTH_WX:],
+    )  # fmt: skip
+    return hands, unpushed(pieces, z, cells, hands, *_hollow_corners(pieces))
 
 
 def _hollow_corners(pieces: Pieces) -> tuple[IntArray, IntArray]:
@@ -111,7 +122,7 @@ def _hollow_corners(pieces: Pieces) -> tuple[IntArray, IntArray]:
 def _on_true_curve(
     cage: Cage, work: CageWork, nodes: IntArray, level: FloatArray
 ) -> Iterator[Brink]:
-    """Hands of discs at rest on the true curve beside the least ones of these nodes."""
+    """Hands of discs that balance on the true curve beside the least ones of these nodes (n,)."""
     from icage.discs.critical import CriticalHands
     from icage.discs.true_levels import REACH, SAME
 
@@ -120,9 +131,10 @@ def _on_true_curve(
     grasps = [frame.into(grasp.contacts) for grasp in cage.grasps]
     top = np.inf if cage.sigma_first is None else cage.sigma_first * (1.0 - LEVEL)
     reach = REACH * work.sagitta + SAME * size
-    for rest in critical.minima_near(work.least_hands_of(nodes), reach):
+    likely = work.least_hands_of(nodes[_least_and_unpushed(work, nodes)[1] <= _NEARLY])
+    for stop in critical.stops_near(work.least_hands_of(nodes), likely, reach):
         # level: it slides, on a shelf
-        if rest.level or rest.sigma >= top:
+        if stop.level or stop.sigma >= top:
             continue
-        if all(np.abs(rest.contacts - known).max() > SAME * size for known in grasps):
-            yield Brink(rest.sigma, frame.back(rest.contacts))
+        if all(np.abs(stop.contacts - known).max() > SAME * size for known in grasps):
+            yield Brink(stop.sigma, frame.back(stop.contacts))

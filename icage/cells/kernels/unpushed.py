@@ -18,9 +18,9 @@ from icage.tolerance import SAME_POINT
 _MOST = 64
 """Edges that all fingers together touch; a finger of a piece touches two, and two at a vertex."""
 
-_TO_ONE_SIDE = 1e-3
-"""[1] Sine of the least angle between normals that are taken to push to one side: far above any
-share that is asked for."""
+_TO_ONE_SIDE = 0.3
+"""[1] Sine of the least angle between normals that are taken to push to one side: above any share
+that is asked for, those of chords in place of arcs among them."""
 
 
 @compiled
@@ -72,12 +72,18 @@ def unpushed(pieces, z, cells, hands, ends_at, begins_at):
             x = hands[k, 0] + wx * z[f, 0] - wy * z[f, 1]
             y = hands[k, 1] + wx * z[f, 1] + wy * z[f, 0]
             own = 0
-            for s in range(pieces.ptr[cells[k, f]], pieces.ptr[cells[k, f] + 1]):
+            first, end = pieces.ptr[cells[k, f]], pieces.ptr[cells[k, f] + 1]
+            for s in range(first, end):
                 v = pieces.slot_vertex[s]
                 ax, ay = x - pieces.x[v], y - pieces.y[v]
-                gap = pieces.normal_x[s] * ax + pieces.normal_y[s] * ay
-                if pieces.slot_neighbour[s] == WALL and abs(gap) <= reach:
-                    own = _put(slots, own, s)
+                if pieces.slot_neighbour[s] == WALL:
+                    nx, ny = pieces.normal_x[s], pieces.normal_y[s]
+                    b = pieces.slot_vertex[s + 1 if s + 1 < end else first]
+                    # within its ends: another edge of the piece may lie on the same line
+                    along = ny * ax - nx * ay
+                    past_end = ny * (x - pieces.x[b]) - nx * (y - pieces.y[b])
+                    if abs(nx * ax + ny * ay) <= reach and -reach <= along and past_end <= reach:
+                        own = _put(slots, own, s)
                 if ends_at[v] >= 0 and math.hypot(ax, ay) <= reach:
                     own = _put(slots, own, ends_at[v])
                     own = _put(slots, own, begins_at[v])
