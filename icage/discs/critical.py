@@ -141,8 +141,8 @@ class CriticalHands:
         """Minima as ``minima_near``, and hands that are minima to one side only.
 
         Where an edge goes over into an arc its normal is that of both: forces balance on the one if
-        they do on the other, and sigma may grow on the edge's side and fall on the arc's. ``likely``
-        (k, fingers, 2) are hands all of which are looked at, whatever features they touch.
+        they do on the other, and sigma may grow on the edge's side and fall on the arc's. All of
+        the hands ``likely`` (k, fingers, 2) are looked at, whatever features they touch.
         """
         found: list[Critical] = []
         every = [*hands[self._nearly_balanced(hands, reach)], *likely]
