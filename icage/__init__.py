@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from icage.brink import Brink
     from icage.cage import Cage, CageStatus, GraspMinimum, Puncture
     from icage.case import Case
     from icage.errors import IcageError, InputError
@@ -43,6 +44,7 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "BestPlacement": "icage.placing.best",
+    "Brink": "icage.brink",
     "Cage": "icage.cage",
     "CageStatus": "icage.cage",
     "Case": "icage.case",
@@ -78,6 +80,7 @@ _WHERE = {
 
 __all__ = [
     "BestPlacement",
+    "Brink",
     "Cage",
     "CageStatus",
     "Case",

@@ -20,6 +20,7 @@ from icage.outline import Outline
 from icage.values import Value
 
 if TYPE_CHECKING:
+    from icage.brink import Brink
     from icage.cells.membership import Answers, PlacementAnswer
     from icage.cells.work import CageWork
     from icage.friction.levels import FrictionLevel, JamTolerance
@@ -270,6 +271,21 @@ class Cage(Value):
         return cast("Shelf | None", self.work.remembered["shelf"])
 
     @property
+    def brink(self) -> Brink | None:
+        """The least hand below sigma_first, no grasp, at which closing stops from one side.
+
+        A finger is at the end of an edge there, or in a minimum too shallow to count. None where
+        there is none, and for cages planned by the contact space, which does not look.
+        """
+        if self.work is None:
+            return None
+        if "brink" not in self.work.remembered:
+            from icage.brink import brink_of
+
+            self.work.remembered["brink"] = brink_of(self, self.work)
+        return cast("Brink | None", self.work.remembered["brink"])
+
+    @property
     def wedge(self) -> Wedge | None:
         """Why, and from which size on, closing ends in the target only by an exact fit.
 
@@ -287,13 +303,15 @@ class Cage(Value):
 
     @property
     def sigma_guaranteed(self) -> float | None:
-        """[unit] Below it closing ends in the target: least of sigma_first, ``shelf``, ``wedge``.
+        """[unit] Below it closing ends in the target.
 
-        None if closing does so however far the hand opens; sigma_0 if nothing is guaranteed.
+        The least of sigma_first, ``shelf``, ``brink`` and ``wedge``. None if closing does so
+        however far the hand opens; sigma_0 if nothing is guaranteed.
         """
         ends = (
             self.sigma_first,
             None if self.shelf is None else self.shelf.sigma,
+            None if self.brink is None else self.brink.sigma,
             None if self.wedge is None else self.wedge.sigma,
         )
         return min((sigma for sigma in ends if sigma is not None), default=None)

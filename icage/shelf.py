@@ -20,7 +20,7 @@ from icage.cells.kernels.near import Hand
 from icage.cells.kernels.plateau import translations
 from icage.cells.work import CageWork
 from icage.geometry.near_frame import NearFrame
-from icage.tolerance import LEVEL, PLATEAU
+from icage.tolerance import PLATEAU
 from icage.values import Value
 
 if TYPE_CHECKING:
@@ -65,14 +65,11 @@ def shelf_of(cage: Cage, work: CageWork) -> Shelf | None:
     """
     found, tree = work.search, work.tree
     free_space = found.free_space
-    reached = found.node_level[: len(tree.birth)]
-    first = np.inf if cage.sigma_first is None else cage.sigma_first
-    own = first if work.polygon_first is None else min(first, work.polygon_first)
-    level = np.maximum(tree.birth[:, BIRTH_SIGMA], reached)
-    opposed = _may_slide(free_space)[found.cells[: len(level)]].sum(axis=1)
-    least = tree.birth[:, BIRTH_SIGMA]
-    use = np.flatnonzero((least > 0.0) & (level < own * (1.0 - LEVEL)) & (opposed >= 2))
-    for node in use[np.argsort(level[use], kind="stable")].tolist():
+    nodes, level = work.below_first(cage.sigma_first)
+    opposed = _may_slide(free_space)[found.cells[nodes]].sum(axis=1) >= 2
+    nodes, level = nodes[opposed], level[opposed]
+    for place in np.argsort(level, kind="stable").tolist():
+        node = int(nodes[place])
         w = complex(*tree.birth[node, [BIRTH_WX, BIRTH_WY]].tolist())
         slide = _slide(free_space, found.cells[node], w, float(tree.birth[node, BIRTH_SIGMA]))
         if slide is None:
@@ -81,7 +78,7 @@ def shelf_of(cage: Cage, work: CageWork) -> Shelf | None:
         near = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
         contacts = NearFrame.of(cage.outline).back(near.reshape(-1, 2)).reshape(near.shape)
         if cage.finger_radius == 0.0 or _slides_on_edges(cage, contacts):
-            return Shelf(float(level[node]), contacts)
+            return Shelf(float(level[place]), contacts)
     return None
 
 

@@ -22,7 +22,8 @@ from icage.cells.free_space import FreeSpace
 from icage.cells.moved_walls import with_walls_moved
 from icage.cells.work import CageWork
 from icage.geometry.near_frame import NearFrame
-from icage.tolerance import DEPTH_CUT, NEAR_POSITION, NEAR_TURN, PINCHED
+from icage.near_hands import are_beside
+from icage.tolerance import DEPTH_CUT, PINCHED
 from icage.values import Value
 
 if TYPE_CHECKING:
@@ -122,7 +123,8 @@ class _Asked:
     def of(cls, cage: Cage, work: CageWork) -> _Asked | None:
         """None where the set is so shallow that a hair more or less says nothing."""
         shelf = None if cage.shelf is None else cage.shelf.sigma
-        ends = (cage.sigma_first, work.polygon_first, shelf)
+        brink = None if cage.brink is None else cage.brink.sigma
+        ends = (cage.sigma_first, work.polygon_first, shelf, brink)
         least = min((one for one in ends if one is not None), default=math.inf)
         hair = SAME * FIT * cage.outline.diameter
         if least - hair <= cage.sigma_0 + hair:
@@ -200,13 +202,7 @@ class _Asked:
 
     def _beside(self, hands: FloatArray, other: FloatArray) -> bool:
         """Whether hands (k, fingers, 2) all are as near to another as jams that are the target."""
-        off = hands.mean(axis=1) - other.mean(axis=0)
-        side, own = hands[:, 1] - hands[:, 0], other[1] - other[0]
-        turn = np.arctan2(
-            own[0] * side[:, 1] - own[1] * side[:, 0], own[0] * side[:, 0] + own[1] * side[:, 1]
-        )
-        near = np.hypot(off[:, 0], off[:, 1]) <= NEAR_POSITION * self.cage.outline.diameter
-        return bool((near & (np.abs(turn) <= NEAR_TURN)).all())
+        return bool(are_beside(hands, other, self.cage.outline.diameter).all())
 
     def _back(self, hand: FloatArray | None) -> FloatArray | None:
         """A hand in the object's own frame."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from icage.arrays import FloatArray
+from icage.arrays import FloatArray, IntArray
 from icage.cells.free_space import Search, Tree
 from icage.cells.kernels.columns import (
     BIRTH_SIGMA,
@@ -18,6 +18,7 @@ from icage.cells.kernels.columns import (
 )
 from icage.cells.kernels.region import least_points
 from icage.errors import MethodError
+from icage.tolerance import LEVEL
 
 if TYPE_CHECKING:
     from icage.cage import Cage
@@ -42,17 +43,32 @@ class CageWork:
     remembered: dict[str, object] = field(default_factory=dict[str, object])
     """Point location and escape levels, built when first asked for (see membership)."""
 
+    def below_first(self, sigma_first: float | None) -> tuple[IntArray, FloatArray]:
+        """Nodes (n,) of the target's component below sigma_first [unit], and their levels (n,).
+
+        A node's level [unit] is that from which on it has hands of the component.
+        """
+        first = np.inf if sigma_first is None else sigma_first
+        own = first if self.polygon_first is None else min(first, self.polygon_first)
+        birth = self.tree.birth[:, BIRTH_SIGMA]
+        level = np.maximum(birth, self.search.node_level[: len(birth)])
+        nodes = np.flatnonzero((birth > 0.0) & (level < own * (1.0 - LEVEL)))
+        return nodes, level[nodes]
+
     def least_hands(self, below: float) -> FloatArray:
         """(n, 3, 2) fingers at the least points of the visited cells born below a level, [unit]."""
+        birth = self.tree.birth[:, BIRTH_SIGMA]
+        return self.least_hands_of(np.flatnonzero((birth > 0.0) & (birth < below)))
+
+    def least_hands_of(self, nodes: IntArray) -> FloatArray:
+        """(n, 3, 2) fingers at the least points of nodes (n,) that are no pinched hands."""
         found, tree = self.search, self.tree
-        birth = tree.birth[:, BIRTH_SIGMA]
-        use = np.flatnonzero((birth > 0.0) & (birth < below))
-        if not len(use):
+        if not len(nodes):
             return np.empty((0, len(found.free_space.z), 2))
         free_space = found.free_space
-        low, at = tree.birth[use], tree.birth_at[use]
+        low, at = tree.birth[nodes], tree.birth_at[nodes]
         points = least_points(
-            free_space.pieces, free_space.z, 0, np.ascontiguousarray(found.cells[use]),
+            free_space.pieces, free_space.z, 0, np.ascontiguousarray(found.cells[nodes]),
             low[:, BIRTH_WX], low[:, BIRTH_WY], at[:, BORN_FINGER], at[:, BORN_SLOT],
         )  # fmt: skip
         d = points[:, 0] + 1j * points[:, 1]

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from icage.arrays import BoolArray, FloatArray
-from icage.discs.kernels.forces import pushing_of
 from icage.hand import HandShape
+from icage.kernels.forces import pushing_of
 
 _PUSHES = 1e-9
 """[1] A force this small, over the largest, is none."""

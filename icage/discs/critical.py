@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, islice, product
 
 import numpy as np
 
@@ -134,13 +134,53 @@ class CriticalHands:
         Of hands that touch the same features, to within ``reach`` [unit], only the smallest is
         looked at, and Newton's method is tried where forces nearly balance.
         """
+        solved = [self._solve(hands[k], reach, 0) for k in self._nearly_balanced(hands, reach)]
+        return sorted((one for one in solved if one is not None), key=lambda one: one.sigma)
+
+    def stops_near(self, hands: FloatArray, likely: FloatArray, reach: float) -> list[Critical]:
+        """Minima as ``minima_near``, and hands that are minima to one side only.
+
+        Where an edge goes over into an arc its normal is that of both: forces balance on the one if
+        they do on the other, and sigma may grow on the edge's side and fall on the arc's. All of
+        the hands ``likely`` (k, fingers, 2) are looked at, whatever features they touch.
+        """
+        found: list[Critical] = []
+        every = [*hands[self._nearly_balanced(hands, reach)], *likely]
+        known = np.empty((0, *hands.shape[1:]))
+        for one in every:
+            if len(known) and np.abs(known - one).max(axis=(1, 2)).min() <= 1e-9 * self.size:
+                continue
+            known = np.concatenate([known, one[None]])
+            minimum = self._solve(one, reach, 0)
+            found += [] if minimum is None else [minimum]
+            found += self._on_edges(one, reach)
+        return sorted(found, key=lambda one: one.sigma)
+
+    def _nearly_balanced(self, hands: FloatArray, reach: float) -> list[int]:
+        """Which hands (k, fingers, 2) Newton's method may find a minimum beside, ascending."""
         rows = self._features.as_hand(hands)
         order = np.argsort(np.hypot(rows[:, 2], rows[:, 3]), kind="stable")
         near = nearly_balanced(
             self._features.sides, rows[order], reach / self.size, _NEARLY_BALANCED
         )
-        solved = [self._solve(hands[k], reach, 0) for k in order[near].tolist()]
-        return sorted((one for one in solved if one is not None), key=lambda one: one.sigma)
+        return order[near].tolist()
+
+    def _on_edges(self, contacts: FloatArray, reach: float) -> list[Critical]:
+        """Minima next to contacts if edges are taken for arcs that they go over into."""
+        start = self._features.as_hand(contacts)
+        feel = felt(self._features.sides, start, max(reach / self.size, 1e-7))
+        near = self._features.named(feel.which)
+        likely = [f for f, p in zip(near, pushes(feel.force), strict=True) if p]
+        far = self._furthest(reach)
+        choices = [
+            (f, *self._features.edges_at(start, f, far)) if f.is_arc else (f,) for f in likely
+        ]
+        found: list[Critical] = []
+        for chosen in islice(product(*choices), 1, _SUBSETS):
+            one = self._with_changes(start, list(chosen), reach, 0, changes=1)
+            if one is not None:
+                found.append(one)
+        return found
 
     def free_fingers(self, contacts: FloatArray) -> tuple[int, ...]:
         """Fingers (1..) of contacts (fingers, 2) that touch nothing."""

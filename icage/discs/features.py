@@ -136,6 +136,17 @@ class Features:
             return Feature(finger, (q - 1) % n, False)
         return None
 
+    def edges_at(self, v: FloatArray, arc: Feature, within: float) -> list[Feature]:
+        """The edges that an arc goes over into where the finger that touches it is ``within``."""
+        finger, q, _ = arc
+        at = self._maps[finger] @ v - self._ring[q]
+        beside = ((q - 1) % len(self._ring), q)
+        return [
+            Feature(finger, edge, False)
+            for edge in beside
+            if float(np.hypot(*(at - self.radius * self._edges.out[edge]))) <= within
+        ]
+
     def exists(self, feature: Feature) -> bool:
         """Whether it is an edge or a vertex that is convex."""
         return not feature.is_arc or bool(self._edges.convex[feature.number])

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import shapely
 
+from icage.brink import Brink
 from icage.cage import Cage, SearchLog
 from icage.cells.regions import FingerRegion
 from icage.shelf import Shelf
@@ -41,7 +42,8 @@ def plan_document(
         "sigma_0": cage.sigma_0,
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
-        **({} if cage.shelf is None else {"shelf": _shelf(cage.shelf)}),
+        **({} if cage.shelf is None else {"shelf": _stop(cage.shelf)}),
+        **({} if cage.brink is None else {"brink": _stop(cage.brink)}),
         **({} if wedge is None else {"wedge": wedge_document(wedge)}),
         **(_brackets(cage) if cage.finger_radius > 0.0 else {}),
         "punctures": [
@@ -74,8 +76,8 @@ def plan_document(
     }
 
 
-def _shelf(shelf: Shelf) -> dict[str, Any]:
-    return {"sigma": shelf.sigma, "contacts": shelf.contacts}
+def _stop(stop: Shelf | Brink) -> dict[str, Any]:
+    return {"sigma": stop.sigma, "contacts": stop.contacts}
 
 
 def wedge_document(wedge: Wedge) -> dict[str, Any]:
@@ -144,12 +146,16 @@ def plan_summary(cage: Cage, name: str, unit: str, *, exact_fit: bool = False) -
     yield f"sigma_0      {cage.sigma_0:.9g} {unit}"
     if cage.status != "not_a_cage":
         ends = "closing ends only in the target"
-        on_shelf = "" if cage.shelf is None else ", or stays on a shelf"
+        stops = {"shelf": cage.shelf, "brink": cage.brink}
+        on = " or ".join(f"a {name}" for name, stop in stops.items() if stop is not None)
+        stays = f", or stays on {on}" if on else ""
         wedge = cage.wedge if exact_fit else None
         exact = "" if wedge is None else ", if all fits exactly"
-        yield _level("sigma_first", cage.sigma_first, cage, ends + on_shelf + exact)
+        yield _level("sigma_first", cage.sigma_first, cage, ends + stays + exact)
         if cage.shelf is not None:
             yield _level("shelf", cage.shelf.sigma, cage, f"{ends} (parallel edges){exact}")
+        if cage.brink is not None:
+            yield _level("brink", cage.brink.sigma, cage, f"{ends} (the end of an edge){exact}")
         if wedge is not None:
             yield _wedge_line(cage, wedge, unit)
         yield _level("sigma_max", cage.sigma_max, cage, "the object cannot escape")

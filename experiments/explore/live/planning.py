@@ -75,6 +75,7 @@ def levels_document(cage: Cage) -> dict[str, Any]:
         "sigma_first": cage.sigma_first,
         "sigma_max": cage.sigma_max,
         "shelf": None if cage.shelf is None else cage.shelf.sigma,
+        "brink": None if cage.brink is None else cage.brink.sigma,
         "wedge": None if cage.wedge is None else cage.wedge.sigma,
         "grasps": len(cage.grasps),
         "warnings": cage.warnings,

@@ -67,7 +67,7 @@ export function contactCard(live, take) {
   }
 
   function levelRows(levels) {
-    const known = levels ? [levels.sigma_0, levels.shelf, levels.wedge, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
+    const known = levels ? [levels.sigma_0, levels.shelf, levels.brink, levels.wedge, levels.sigma_first, levels.sigma_max].filter((one) => one !== null) : [];
     const length = lengthWriter(data.diameter, known);
     const row = (below, value, words) => html("div", {}, html("dt", {}, subscripted("σ", below)),
       html("dd", {}, value === undefined ? html("span", { class: "pending" }, "…")
@@ -75,23 +75,27 @@ export function contactCard(live, take) {
           : html("span", {}, html("b", {}, `${length(value)} ${data.unit}`), ...(below === "0" ? []
             : [` = ${ratio(value / levels.sigma_0)} `, subscripted("σ", "0")]))),
       html("dd", { class: "note" }, value === null ? words.replace("below it", "at any size") : words));
-    const shelf = levels?.shelf ?? null;
+    const stops = [["shelf", levels?.shelf ?? null, "on parallel edges"],
+      ["brink", levels?.brink ?? null, "at the end of an edge"]]
+      .filter(([, sigma]) => sigma !== null).sort(([, a], [, b]) => a - b);
+    const stop = stops[0] ?? null;
     const wedge = levels?.wedge ?? null;
-    if (wedge !== null && (shelf === null || wedge < shelf)) {
+    if (wedge !== null && (stop === null || wedge < stop[1])) {
       const words = wedge > levels.sigma_0
         ? "below it closing ends in this grasp; from it on only if all fits exactly"
         : "closing ends in this grasp by an exact fit only: a hair more or less, and it ends elsewhere";
       return [row("0", levels.sigma_0, "at the grasp"), row("wedge", wedge, words),
         row("max", levels.sigma_max, "below it the object cannot leave")];
     }
-    const one = shelf === null && levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
+    const one = stop === null && levels && levels.sigma_first !== null && levels.sigma_first === levels.sigma_max;
     if (one) {
       return [row("0", levels.sigma_0, "at the grasp"), row("max", levels.sigma_max,
         "below it the object cannot leave, and closing ends in this grasp")];
     }
-    if (shelf !== null) {
+    if (stop !== null) {
+      const [name, sigma, where] = stop;
       return [row("0", levels.sigma_0, "at the grasp"),
-        row("shelf", shelf, "below it closing ends in this grasp; from it on it may stop on parallel edges"),
+        row(name, sigma, `below it closing ends in this grasp; from it on it may stop ${where}`),
         row("max", levels.sigma_max, "below it the object cannot leave")];
     }
     return [row("0", levels?.sigma_0, "at the grasp"),

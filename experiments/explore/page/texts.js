@@ -5,7 +5,8 @@ import { foreign, html, subscripted } from "./svg.js";
 
 /** The level below which closing ends in the target, and its name. */
 function guaranteed(plan) {
-  const levels = [["first", plan.sigma_first], ["shelf", plan.shelf?.sigma ?? null], ["wedge", plan.wedge?.sigma ?? null]];
+  const levels = [["first", plan.sigma_first],
+    ...["shelf", "brink", "wedge"].map((name) => [name, plan[name]?.sigma ?? null])];
   const known = levels.filter(([, sigma]) => sigma !== null).sort(([, a], [, b]) => a - b);
   return known[0] ?? ["first", null];
 }

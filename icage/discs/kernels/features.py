@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.discs.kernels.forces import pushing_of
 from icage.kernels.compiled import compiled
+from icage.kernels.forces import pushing_of
 from icage.kernels.storage import longer
 
 

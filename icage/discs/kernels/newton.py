@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.discs.kernels.features import put_gaps
-from icage.discs.kernels.forces import least_squares, pushing_of
 from icage.kernels.compiled import compiled
+from icage.kernels.forces import least_squares, pushing_of
 
 TOUCHES = 1e-10
 """[diameter] A solved finger is this near to the features it touches, and no deeper in any."""
