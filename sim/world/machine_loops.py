@@ -13,8 +13,10 @@ from typing import Any
 
 from numba import njit
 
-borrowing: Any = njit(cache=True, nogil=True, _nrt=False)
+_njit: Any = njit  # whose type tells of no private options
+
+borrowing: Any = _njit(cache=True, nogil=True, _nrt=False)
 """Compile a loop that is called, from Python or from others."""
 
-inlined: Any = njit(cache=True, nogil=True, _nrt=False, inline="always")
+inlined: Any = _njit(cache=True, nogil=True, _nrt=False, inline="always")
 """Compile a loop into those that call it."""
