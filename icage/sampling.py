@@ -53,6 +53,12 @@ _LEAST_SIGMA = 1.0 - 1e-6
 _FILLED = 1e-9
 """[1] The triangles of a region fill it to this share of its area: the rounding of many sums."""
 
+_BEFORE = 1.0 - 1e-12
+"""[1] Of a share of an area: the search begins before it for certain, whatever the rounding."""
+
+_STEPS = 4
+"""Triangles gone through before the rest is found by bisection."""
+
 _ROOM = 4e-9
 """[diameter] The outer bounds of regions are noded on a grid of a quarter of this."""
 
@@ -360,10 +366,16 @@ class _Hands:
 
 @dataclass(frozen=True, slots=True)
 class _Area:
-    """A region cut into triangles, to draw points from."""
+    """A region cut into triangles, to draw points from.
 
-    corners: NDArray[np.complex128]
+    ``corner`` and ``sides`` (2, m) each are a triangle's first corner and the ways to the others;
+    ``guide`` (m + 1,) says which triangle the search for a share k / m of the area begins at.
+    """
+
+    corner: FloatArray
+    sides: tuple[FloatArray, FloatArray]
     cumulative: FloatArray
+    guide: NDArray[np.int64]
 
     @classmethod
     def of(cls, region: Region) -> _Area:
@@ -373,16 +385,44 @@ class _Area:
         if not abs(areas.sum() - region.area) <= _FILLED * region.area:
             raise GeometryError("the triangles of a caging region do not fill it")
         rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
-        return cls(rings[..., 0] + 1j * rings[..., 1], np.cumsum(areas))
+        a, b, c = np.ascontiguousarray(rings.transpose(1, 2, 0))
+        cumulative = np.cumsum(areas)
+        shares = np.arange(len(cumulative) + 1) / len(cumulative)
+        guide = np.searchsorted(cumulative, _BEFORE * shares * cumulative[-1], "right")
+        return cls(a, (b - a, c - a), cumulative, guide)
 
     def points(self, uniform: _Uniform) -> NDArray[np.complex128]:
         """Points (n,), uniform over the region."""
-        at = np.searchsorted(self.cumulative, uniform.triangle * self.cumulative[-1], "right")
-        a, b, c = self.corners[np.minimum(at, len(self.corners) - 1)].T
+        at = self._triangles(uniform.triangle)
         u, v = np.array(uniform.within)
         over = u + v > 1.0
-        u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
-        return a + u * (b - a) + v * (c - a)
+        np.subtract(1.0, u, out=u, where=over)
+        np.subtract(1.0, v, out=v, where=over)
+        points = np.empty(len(at), dtype=np.complex128)
+        to_b, to_c = self.sides
+        points.real = self.corner[0][at] + u * to_b[0][at] + v * to_c[0][at]
+        points.imag = self.corner[1][at] + u * to_b[1][at] + v * to_c[1][at]
+        return points
+
+    def _triangles(self, share: FloatArray) -> NDArray[np.int64]:
+        """The first triangles (n,) up to which there is more than ``share`` (n,) of the area.
+
+        What a bisection would find: most are found at the guide's first word, all but a few after
+        some steps.
+        """
+        last = len(self.cumulative) - 1
+        area = share * self.cumulative[-1]
+        at = np.minimum(self.guide[(share * (last + 1)).astype(np.int64)], last)
+        behind = np.flatnonzero(self.cumulative[at] <= area)
+        for _ in range(_STEPS):
+            if not len(behind):
+                return at
+            behind = behind[at[behind] < last]
+            at[behind] += 1
+            behind = behind[self.cumulative[at[behind]] <= area[behind]]
+        found = np.searchsorted(self.cumulative, area[behind], "right")
+        at[behind] = np.minimum(found, last)
+        return at
 
 
 def region_points(region: Region, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
