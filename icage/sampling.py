@@ -14,8 +14,8 @@ it uniform in dx dy dsigma dtheta, and the membership query has the last word.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -52,6 +52,12 @@ _LEAST_SIGMA = 1.0 - 1e-6
 
 _FILLED = 1e-9
 """[1] The triangles of a region fill it to this share of its area: the rounding of many sums."""
+
+_BEFORE = 1.0 - 1e-12
+"""[1] Of a share of an area: the search begins before it for certain, whatever the rounding."""
+
+_STEPS = 4
+"""Triangles gone through before the rest is found by bisection."""
 
 _ROOM = 4e-9
 """[diameter] The outer bounds of regions are noded on a grid of a quarter of this."""
@@ -132,6 +138,22 @@ def draw_starts(
         The set is empty, or ``TRIES_PER_START`` hands a start were not enough; says how many were
         found in how many tries.
     """
+    return draw_starts_of_each(cage, which, count, [rng], progress, box)[0]
+
+
+@geometry_told()
+def draw_starts_of_each(
+    cage: Cage,
+    which: StartSet,
+    count: int,
+    rngs: Sequence[np.random.Generator],
+    progress: Callable[[int], None] | None = None,
+    box: Box | None = None,
+) -> list[Starts]:
+    """``draw_starts`` with each of several generators: the same starts, in less time.
+
+    Hands of all of them are looked at together. Raises what ``draw_starts`` raises.
+    """
     which = same_set(cage, which)
     if cage.status == "not_a_cage" or (which == "rest" and not has_rest(cage)):
         raise SamplingError(f"this cage has no {which} set of placements")
@@ -141,25 +163,80 @@ def draw_starts(
             "(a wedge)"
         )
     box = Box.around(cage, which) if box is None else box
-    found: list[FloatArray] = []
-    have, tried, limit = 0, 0, TRIES_PER_START * count
-    while have < count and tried < limit:
-        rows, places = box.some_of(rng, cage, which, _CHUNK, count - have)
-        if have + len(rows) >= count:  # tries after the last start taken do not count
-            rows = rows[: count - have]
-            tried += int(places[len(rows) - 1]) + 1 if len(rows) else 0
-        else:
-            tried += _CHUNK
-        found.append(rows)
-        have += len(rows)
-        if progress is not None:
-            progress(len(rows))
-    if have < count:
-        raise SamplingError(
-            f"the {which} set is too small to draw from: {have} of {count} placements found in "
-            f"{tried} tries"
-        )
-    return Starts(read_only(np.concatenate(found)), tried)
+    drawings = [_Drawing(rng, count) for rng in rngs]
+    while lacking := [drawing for drawing in drawings if drawing.lacking]:
+        hands = [drawing.hands() for drawing in lacking]
+        rows, places = box.of_the_set(cage, which, _Hands.joined(hands))
+        ends = np.cumsum([len(some.kept) for some in hands])
+        cuts = np.searchsorted(places, ends)
+        begins = zip([0, *ends.tolist()], [0, *cuts.tolist()], cuts.tolist(), strict=False)
+        for drawing, (begin, first, last) in zip(lacking, begins, strict=True):
+            found = drawing.take(rows[first:last], places[first:last] - begin)
+            if progress is not None and found is not None:
+                progress(found)
+    for drawing in drawings:
+        if drawing.have < count:
+            raise SamplingError(
+                f"the {which} set is too small to draw from: {drawing.have} of {count} placements "
+                f"found in {drawing.tried} tries"
+            )
+    return [drawing.starts() for drawing in drawings]
+
+
+@dataclass(slots=True)
+class _Drawing:
+    """Starts drawn with one generator: the hands to look at next, and what is found of them.
+
+    All random numbers of ``_CHUNK`` hands are drawn, but no more hands are looked at than it takes:
+    the first ``count`` of the set in the order of the hands, in parts of whatever size.
+    """
+
+    rng: np.random.Generator
+    count: int
+    have: int = 0
+    tried: int = 0
+    _rows: list[FloatArray] = field(default_factory=list[FloatArray])
+    _chunk: _Hands | None = None
+    _begin: int = 0
+    _size: int = 0
+    _found: int = 0
+    _last: int = 0
+
+    @property
+    def lacking(self) -> bool:
+        """Whether hands are still to be looked at."""
+        return self.have < self.count and self.tried < TRIES_PER_START * self.count
+
+    def hands(self) -> _Hands:
+        """The hands to look at next."""
+        if self._chunk is None:
+            self._chunk = _Hands.of_size(self.rng, _CHUNK)
+            self._begin, self._found = 0, 0
+            self._size = _FEWEST * (self.count - self.have)
+        return self._chunk.part(slice(self._begin, min(self._begin + self._size, _CHUNK)))
+
+    def take(self, rows: FloatArray, places: NDArray[np.int64]) -> int | None:
+        """Take those of the hands that are in the set; how many a chunk gave when it is done."""
+        wanted = self.count - self.have
+        rows = rows[: wanted - self._found]
+        if len(rows):
+            self._last = self._begin + int(places[len(rows) - 1])
+        self._rows.append(rows)
+        self._found += len(rows)
+        self._begin = min(self._begin + self._size, _CHUNK)
+        if self._found < wanted and self._begin < _CHUNK:
+            more = (wanted - self._found) * self._begin // max(self._found, 1)
+            self._size = _FEWEST * wanted + more
+            return None
+        # tries after the last start taken do not count
+        self.tried += self._last + 1 if self._found == wanted else _CHUNK
+        self.have += self._found
+        self._chunk = None
+        return self._found
+
+    def starts(self) -> Starts:
+        """What was drawn."""
+        return Starts(read_only(np.concatenate([np.empty((0, 4)), *self._rows])), self.tried)
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,37 +276,16 @@ class Box:
         areas = (_Area.of(regions[i]), _Area.of(regions[j]))
         return cls(z, (i, j), areas, third, floor * _LEAST_SIGMA, top)
 
-    def some_of(
-        self, rng: np.random.Generator, cage: Cage, which: StartSet, tries: int, wanted: int
+    def of_the_set(
+        self, cage: Cage, which: StartSet, hands: _Hands
     ) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Placements (k, 4) of the set among ``tries`` hands, and which of the hands they were.
-
-        In the order of the hands, the first ``wanted`` of them for certain. All random numbers are
-        drawn, but no more hands are looked at than it takes to find so many.
-        """
-        one, other = (_Uniform.of_size(rng, tries) for _ in self.areas)
-        kept = rng.random(tries)
-        rows, places = [np.empty((0, 4))], [np.empty(0, dtype=np.int64)]
-        found, begin, size = 0, 0, _FEWEST * wanted
-        while found < wanted and begin < tries:
-            here = slice(begin, min(begin + size, tries))
-            some, at = self._of_the_set(cage, which, one.part(here), other.part(here), kept[here])
-            rows.append(some)
-            places.append(begin + at)
-            found, begin = found + len(some), here.stop
-            size = _FEWEST * wanted + (wanted - found) * begin // max(found, 1)
-        return np.concatenate(rows), np.concatenate(places)
-
-    def _of_the_set(
-        self, cage: Cage, which: StartSet, one: _Uniform, other: _Uniform, kept: FloatArray
-    ) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Placements (k, 4) of the set among hands (n) of these random numbers, and which ones."""
-        d, w = self._hands(one, other)
+        """Placements (k, 4) of the set among hands (n), and which of the hands they are."""
+        d, w = self._hands(hands.one, hands.other)
         sigma = np.abs(w)
         # A hand smaller than the floor would have to be kept more than once: there is none in the
         # set, or the floor is wrong.
         too_small = np.flatnonzero(sigma < self.floor)
-        keep = (kept * sigma < self.floor) & (sigma >= self.floor) & (sigma < self.top)
+        keep = (hands.kept * sigma < self.floor) & (sigma >= self.floor) & (sigma < self.top)
         places = np.flatnonzero(keep)
         rows = _placements(d, w, places)
         at = cage.hand.fingers(rows)[:, 3 - sum(self.pair)]
@@ -279,11 +335,47 @@ class _Uniform:
 
 
 @dataclass(frozen=True, slots=True)
-class _Area:
-    """A region cut into triangles, to draw points from."""
+class _Hands:
+    """Random numbers of hands (n): of the points of two fingers, and ``kept`` (n,)."""
 
-    corners: NDArray[np.complex128]
+    one: _Uniform
+    other: _Uniform
+    kept: FloatArray
+
+    @classmethod
+    def of_size(cls, rng: np.random.Generator, count: int) -> _Hands:
+        """Draw them for ``count`` hands."""
+        return cls(_Uniform.of_size(rng, count), _Uniform.of_size(rng, count), rng.random(count))
+
+    @classmethod
+    def joined(cls, parts: Sequence[_Hands]) -> _Hands:
+        """Those of all parts, one after another."""
+        one, other = (
+            _Uniform(
+                np.concatenate([some.triangle for some in pair]),
+                np.concatenate([some.within for some in pair], axis=1),
+            )
+            for pair in ([part.one for part in parts], [part.other for part in parts])
+        )
+        return cls(one, other, np.concatenate([part.kept for part in parts]))
+
+    def part(self, here: slice) -> _Hands:
+        """Those of some of the hands."""
+        return _Hands(self.one.part(here), self.other.part(here), self.kept[here])
+
+
+@dataclass(frozen=True, slots=True)
+class _Area:
+    """A region cut into triangles, to draw points from.
+
+    ``corner`` and ``sides`` (2, m) each are a triangle's first corner and the ways to the others;
+    ``guide`` (m + 1,) says which triangle the search for a share k / m of the area begins at.
+    """
+
+    corner: FloatArray
+    sides: tuple[FloatArray, FloatArray]
     cumulative: FloatArray
+    guide: NDArray[np.int64]
 
     @classmethod
     def of(cls, region: Region) -> _Area:
@@ -293,16 +385,44 @@ class _Area:
         if not abs(areas.sum() - region.area) <= _FILLED * region.area:
             raise GeometryError("the triangles of a caging region do not fill it")
         rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
-        return cls(rings[..., 0] + 1j * rings[..., 1], np.cumsum(areas))
+        a, b, c = np.ascontiguousarray(rings.transpose(1, 2, 0))
+        cumulative = np.cumsum(areas)
+        shares = np.arange(len(cumulative) + 1) / len(cumulative)
+        guide = np.searchsorted(cumulative, _BEFORE * shares * cumulative[-1], "right")
+        return cls(a, (b - a, c - a), cumulative, guide)
 
     def points(self, uniform: _Uniform) -> NDArray[np.complex128]:
         """Points (n,), uniform over the region."""
-        at = np.searchsorted(self.cumulative, uniform.triangle * self.cumulative[-1], "right")
-        a, b, c = self.corners[np.minimum(at, len(self.corners) - 1)].T
+        at = self._triangles(uniform.triangle)
         u, v = np.array(uniform.within)
         over = u + v > 1.0
-        u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
-        return a + u * (b - a) + v * (c - a)
+        np.subtract(1.0, u, out=u, where=over)
+        np.subtract(1.0, v, out=v, where=over)
+        points = np.empty(len(at), dtype=np.complex128)
+        to_b, to_c = self.sides
+        points.real = self.corner[0][at] + u * to_b[0][at] + v * to_c[0][at]
+        points.imag = self.corner[1][at] + u * to_b[1][at] + v * to_c[1][at]
+        return points
+
+    def _triangles(self, share: FloatArray) -> NDArray[np.int64]:
+        """The first triangles (n,) up to which there is more than ``share`` (n,) of the area.
+
+        What a bisection would find: most are found at the guide's first word, all but a few after
+        some steps.
+        """
+        last = len(self.cumulative) - 1
+        area = share * self.cumulative[-1]
+        at = np.minimum(self.guide[(share * (last + 1)).astype(np.int64)], last)
+        behind = np.flatnonzero(self.cumulative[at] <= area)
+        for _ in range(_STEPS):
+            if not len(behind):
+                return at
+            behind = behind[at[behind] < last]
+            at[behind] += 1
+            behind = behind[self.cumulative[at[behind]] <= area[behind]]
+        found = np.searchsorted(self.cumulative, area[behind], "right")
+        at[behind] = np.minimum(found, last)
+        return at
 
 
 def region_points(region: Region, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:

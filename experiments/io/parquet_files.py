@@ -27,8 +27,12 @@ _AT_ONCE: Final = 1 << 16
 """[row] Looked at together for the digest: it does not hang on it."""
 
 
-def write_table(table: Table, path: Path, words: Mapping[bytes, bytes]) -> None:
+def write_table(
+    table: Table, path: Path, words: Mapping[bytes, bytes], *, for_long: bool = True
+) -> None:
     """Write a table, on the disk before it gets its name; ``words`` are kept with it.
+
+    What is not there ``for_long`` is written plainly, in half the time.
 
     Raises
     ------
@@ -39,7 +43,8 @@ def write_table(table: Table, path: Path, words: Mapping[bytes, bytes]) -> None:
     with whole_file(path) as part, part.open("wb") as stream:
         pq.write_table(
             table.replace_schema_metadata(kept), stream,
-            compression="zstd", write_page_checksum=True,
+            compression="zstd" if for_long else "none", use_dictionary=for_long,
+            write_statistics=for_long, write_page_checksum=True,
         )  # fmt: skip
         stream.flush()
         os.fsync(stream.fileno())

@@ -8,11 +8,13 @@ after a step or two.
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 
 from icage.arrays import FloatArray
+from sim.world.machine_loops import borrowing
 from sim.world.scene import Scene
 
 LEAD: Final = 2e-3
@@ -37,6 +39,9 @@ def first_touch(scene: Scene, qpos: FloatArray) -> FloatArray:
     """
     vertices = scene.object.vertices
     radius = scene.finger_radius / scene.object.diameter
+    following = np.roll(vertices, -1, axis=0)
+    length = np.hypot(following[:, 0] - vertices[:, 0], following[:, 1] - vertices[:, 1])
+    along = (following - vertices) / length[:, None]
     sigma = scene.sigma(qpos)
     cos, sin = np.cos(qpos[:, 5]), np.sin(qpos[:, 5])
     end_x, end_y = _turned_back(cos, sin, -qpos[:, 3], -qpos[:, 4])
@@ -45,11 +50,7 @@ def first_touch(scene: Scene, qpos: FloatArray) -> FloatArray:
         x, y = (scene.kinematics.directions[k] * scene.kinematics.lengths[k]).tolist()
         way_x, way_y = _turned_back(cos, sin, -sigma * x, -sigma * y)
         begin_x, begin_y = end_x - way_x, end_y - way_y
-        hit = np.minimum(
-            _edge_hits(vertices, radius, begin_x, begin_y, way_x, way_y),
-            _vertex_hits(vertices, radius, begin_x, begin_y, way_x, way_y),
-        )
-        soonest = np.minimum(soonest, hit)
+        _hits(vertices, along, length, radius, begin_x, begin_y, way_x, way_y, soonest)
     return sigma * (1.0 - soonest)
 
 
@@ -60,47 +61,40 @@ def _turned_back(
     return cos * x + sin * y, cos * y - sin * x
 
 
-def _edge_hits(
+@borrowing
+def _hits(
     vertices: FloatArray,
+    along: FloatArray,
+    length: FloatArray,
     radius: float,
     begin_x: FloatArray,
     begin_y: FloatArray,
     way_x: FloatArray,
     way_y: FloatArray,
-) -> FloatArray:
-    """Share u in [0, 1] of the way at which a disc meets an edge from outside, else 1; (N,)."""
-    following = np.roll(vertices, -1, axis=0)
-    length = np.hypot(following[:, 0] - vertices[:, 0], following[:, 1] - vertices[:, 1])
-    along_x = (following[:, 0] - vertices[:, 0]) / length
-    along_y = (following[:, 1] - vertices[:, 1]) / length
-    off_x = begin_x[:, None] - vertices[:, 0]
-    off_y = begin_y[:, None] - vertices[:, 1]
-    height = off_x * along_y - off_y * along_x  # outward: right of a counterclockwise edge
-    sinking = -(way_x[:, None] * along_y - way_y[:, None] * along_x)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = (height - radius) / sinking
-    foot = off_x * along_x + off_y * along_y
-    foot = foot + u * (way_x[:, None] * along_x + way_y[:, None] * along_y)
-    hits = (sinking > 0.0) & (height > 0.0) & (foot >= 0.0) & (foot <= length) & (u <= 1.0)
-    return np.where(hits & (u > -1.0), np.maximum(u, 0.0), 1.0).min(axis=1)
+    soonest: FloatArray,
+) -> None:  # pragma: no cover - compiled
+    """Lower ``soonest`` (N,) to the share in [0, 1] of each way at which a disc meets the outline.
 
-
-def _vertex_hits(
-    vertices: FloatArray,
-    radius: float,
-    begin_x: FloatArray,
-    begin_y: FloatArray,
-    way_x: FloatArray,
-    way_y: FloatArray,
-) -> FloatArray:
-    """Share u in [0, 1] of the way at which a disc meets a vertex, else 1; (N,)."""
-    off_x = begin_x[:, None] - vertices[:, 0]
-    off_y = begin_y[:, None] - vertices[:, 1]
-    a = (way_x * way_x + way_y * way_y)[:, None]
-    b = -(off_x * way_x[:, None] + off_y * way_y[:, None])  # positive: coming nearer
-    c = off_x * off_x + off_y * off_y - radius * radius
-    square = b * b - a * c
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = c / (b + np.sqrt(np.maximum(square, 0.0)))
-    hits = (square >= 0.0) & (b > 0.0) & (u <= 1.0)
-    return np.where(hits, np.maximum(u, 0.0), 1.0).min(axis=1)
+    It meets an edge from outside, or a vertex.
+    """
+    for n in range(len(soonest)):
+        wx, wy = way_x[n], way_y[n]
+        a = wx * wx + wy * wy
+        for i in range(len(length)):
+            off_x, off_y = begin_x[n] - vertices[i, 0], begin_y[n] - vertices[i, 1]
+            ex, ey = along[i, 0], along[i, 1]
+            height = off_x * ey - off_y * ex  # outward: right of a counterclockwise edge
+            sinking = -(wx * ey - wy * ex)
+            if sinking > 0.0 and height > 0.0:
+                u = (height - radius) / sinking
+                if -1.0 < u <= 1.0 and u < soonest[n]:
+                    foot = off_x * ex + off_y * ey
+                    foot = foot + u * (wx * ex + wy * ey)
+                    if 0.0 <= foot <= length[i]:
+                        soonest[n] = max(u, 0.0)
+            b = -(off_x * wx + off_y * wy)  # positive: coming nearer
+            if b > 0.0:
+                c = off_x * off_x + off_y * off_y - radius * radius
+                square = b * b - a * c
+                if square >= 0.0:
+                    soonest[n] = min(soonest[n], max(c / (b + math.sqrt(square)), 0.0))

@@ -24,10 +24,10 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import BoolArray, FloatArray, IntArray
-from sim.world.hand_in_object import fingers_seen
+from sim.world.hand_in_object import fingers_turned
+from sim.world.machine_loops import borrowing, inlined
 
 STIFFEST: Final = 0.9999
 """The engine's bound on an impedance. Both ends of ours are at it or above: d is constant."""
@@ -75,6 +75,7 @@ class Room(NamedTuple):
     """Scratch of one step: rows (_LINKS + _MOST, 6), what each is of, and the system of equations.
 
     ``force`` is a row's force over its weight; a contact whose ``force`` is 0 does not press.
+    ``fingers`` (3, 2) and ``turn`` (2,), its cosine and sine, are the pose at hand.
     """
 
     rows: FloatArray
@@ -85,6 +86,7 @@ class Room(NamedTuple):
     system: FloatArray
     right: FloatArray
     fingers: FloatArray
+    turn: FloatArray
     total: FloatArray
 
 
@@ -94,19 +96,18 @@ def empty_room() -> Room:
     return Room(
         np.zeros((rows, 6)), np.zeros(rows), np.zeros(rows), np.zeros(rows),
         np.zeros(rows, dtype=np.int64), np.zeros((6, 6)), np.zeros(6), np.zeros((3, 2)),
-        np.zeros(3),
+        np.zeros(2), np.zeros(3),
     )  # fmt: skip
 
 
-@njit(cache=True)
-def _copy(rows: FloatArray, out: FloatArray) -> None:  # pragma: no cover - compiled
+@inlined
+def copy_rows(rows: FloatArray, out: FloatArray) -> None:  # pragma: no cover - compiled
     """``out[:] = rows`` (3, 6), which would take two seconds to compile, for what it may raise."""
     for a in range(rows.shape[0]):
         for b in range(rows.shape[1]):
             out[a, b] = rows[a, b]
 
 
-@njit(cache=True)
 def go_on(
     ids: IntArray,
     plant: Plant,
@@ -115,45 +116,76 @@ def go_on(
     stride: int,
     state: FloatArray,
     peak: FloatArray,
-) -> BoolArray:  # pragma: no cover - compiled
+) -> BoolArray:
     """``stride`` steps of the closings ``ids``, with at most ``most`` contacts; which of them went.
 
     Updated in place, a row each for N closings: ``state`` (N, 3, 6) = positions, velocities,
     accelerations, and the largest force ``peak`` (N,). One that cannot go all the way is not begun.
     """
     went = np.empty(len(ids), dtype=np.bool_)
-    ahead = np.empty((3, 6))
-    for n in range(len(ids)):
-        went[n] = goes_on(ids[n], plant, room, most, stride, ahead, state, peak)
+    _go_on(ids, plant, room, most, stride, state, peak, np.empty((3, 6)), went)
     return went
 
 
-@njit(cache=True, inline="always")
-def goes_on(
-    i: int,
+@borrowing
+def _go_on(
+    ids: IntArray,
     plant: Plant,
     room: Room,
     most: int,
     stride: int,
-    ahead: FloatArray,
     state: FloatArray,
     peak: FloatArray,
+    ahead: FloatArray,
+    went: BoolArray,
+) -> None:  # pragma: no cover - compiled
+    for n in range(len(ids)):
+        i = ids[n]
+        copy_rows(state[i], ahead)
+        went[n] = goes_on(plant, room, most, stride, False, ahead)
+        if went[n]:
+            copy_rows(ahead, state[i])
+            peak[i] = max(peak[i], pressing(room))
+
+
+@inlined
+def stand(plant: Plant, room: Room, qpos: FloatArray) -> None:  # pragma: no cover - compiled
+    """Have the pose ``qpos`` (6,) at hand."""
+    cos, sin = math.cos(qpos[5]), math.sin(qpos[5])
+    room.turn[0], room.turn[1] = cos, sin
+    fingers_turned(plant.directions, qpos, cos, sin, room.fingers)
+
+
+@inlined
+def goes_on(
+    plant: Plant, room: Room, most: int, stride: int, stands: bool, ahead: FloatArray
 ) -> bool:  # pragma: no cover - compiled
-    """The same for one closing, with ``ahead`` (3, 6) to compute in."""
-    _copy(state[i], ahead)
-    for _ in range(stride):
+    """``stride`` steps of one closing ``ahead`` (3, 6); False: it cannot go all the way.
+
+    ``stands`` says that its pose is at hand.
+    """
+    for k in range(stride):
+        if k > 0 or not stands:
+            stand(plant, room, ahead[0])
         if not _step(plant, room, most, ahead):
             return False
-    _copy(ahead, state[i])
-    peak[i] = max(peak[i], max(room.total[0], room.total[1], room.total[2]))
     return True
 
 
-@njit(cache=True)
+@inlined
+def pressing(room: Room) -> float:  # pragma: no cover - compiled
+    """The largest force on a finger in the last step."""
+    return max(room.total[0], room.total[1], room.total[2])
+
+
+@inlined
 def _step(
     plant: Plant, room: Room, most: int, state: FloatArray
 ) -> bool:  # pragma: no cover - compiled
-    """One step of state (3, 6) = positions, velocities, accelerations; False: not done."""
+    """One step of state (3, 6) = positions, velocities, accelerations; False: not done.
+
+    The pose of the positions is at hand.
+    """
     qpos, qvel, qacc = state[0], state[1], state[2]
     count = _rows(plant, room, most, qpos, qvel)
     if count < 0:
@@ -185,7 +217,7 @@ def _step(
     return True
 
 
-@njit(cache=True)
+@inlined
 def _rows(
     plant: Plant, room: Room, most: int, qpos: FloatArray, qvel: FloatArray
 ) -> int:  # pragma: no cover - compiled
@@ -196,8 +228,7 @@ def _rows(
         room.weight[k] = plant.link_weight[k]
         error, speed = _dot(plant.links, k, qpos), _dot(plant.links, k, qvel)
         room.wanted[k] = -plant.link_law[1] * speed - plant.link_law[0] * error
-    fingers_seen(plant.directions, qpos, room.fingers)
-    cos, sin = math.cos(qpos[5]), math.sin(qpos[5])
+    cos, sin = room.turn[0], room.turn[1]
     count = _LINKS
     for finger in range(3):
         x, y = room.fingers[finger, 0], room.fingers[finger, 1]
@@ -239,7 +270,7 @@ def _rows(
     return -1
 
 
-@njit(cache=True)
+@borrowing
 def _from_piece(
     points: FloatArray, first: int, last: int, x: float, y: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -264,7 +295,7 @@ def _from_piece(
     return away, nx / away, ny / away
 
 
-@njit(cache=True)
+@borrowing
 def _dot(rows: FloatArray, k: int, vector: FloatArray) -> float:  # pragma: no cover - compiled
     total = 0.0
     for j in range(6):
@@ -272,7 +303,7 @@ def _dot(rows: FloatArray, k: int, vector: FloatArray) -> float:  # pragma: no c
     return total
 
 
-@njit(cache=True)
+@inlined
 def _solve(
     plant: Plant, room: Room, count: int, qvel: FloatArray, qacc: FloatArray
 ) -> None:  # pragma: no cover - compiled

@@ -12,11 +12,11 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.closing.near_edges import NearEdges, depth_near
 from sim.world.hand_in_object import fingers_seen
+from sim.world.machine_loops import borrowing, inlined
 
 
 class EndingCode(IntEnum):
@@ -41,6 +41,10 @@ engine's meshes, a thousandth of what a step moves."""
 PART, PARTS = 0.5, 3
 """[1] A tail is exponential if this many parts in a row, in each of which the logarithm of the
 speed falls by ``PART``, ..."""
+
+_WITHIN_PART = 0.999 * math.exp(PART)
+"""[1] A fall of the speed by less has not gone through a part for certain, whatever the
+rounding."""
 
 AGREE = 0.01
 """[1] ... fall at rates that differ by less than this. A second motion hidden under the first (a
@@ -105,7 +109,7 @@ class Record(NamedTuple):
     ending: IntArray
 
 
-@njit(cache=True)
+@inlined
 def _fades(
     i: int, speed: float, bounds: Bounds, record: Record
 ) -> bool:  # pragma: no cover - compiled
@@ -116,7 +120,10 @@ def _fades(
     if not 0.0 < speed < before or record.seen[i, TOUCHES] < 3:
         tail[_PART_SPEED], tail[_PART_STEP], tail[_RATE], tail[_GOOD] = speed, now, 0.0, 0
         return False
-    loss, steps = math.log(tail[_PART_SPEED] / speed), now - tail[_PART_STEP]
+    fall, steps = tail[_PART_SPEED] / speed, now - tail[_PART_STEP]
+    if fall < _WITHIN_PART and (tail[_GOOD] < PARTS or speed >= _SLOW):
+        return False  # whatever the logarithm is
+    loss = math.log(fall)
     if loss >= PART:
         rate, last = loss / steps, tail[_RATE]
         tail[_GOOD] = tail[_GOOD] + 1 if abs(rate - last) <= AGREE * last else 1
@@ -130,7 +137,7 @@ def _fades(
     return speed * bounds.step / rate <= record.remains[i]
 
 
-@njit(cache=True)
+@inlined
 def _measure(
     i: int,
     vertices: FloatArray,
@@ -155,7 +162,7 @@ def _measure(
             apart[i, k, 2] = -depth[k] - 2.0 * TOUCHING
 
 
-@njit(cache=True, inline="always")
+@inlined
 def look_at(
     i: int,
     qpos: FloatArray,
@@ -168,12 +175,11 @@ def look_at(
 ) -> bool:  # pragma: no cover - compiled
     """Look at closing i at ``qpos``, ``qvel`` (6,); whether it goes on.
 
-    ``fingers`` (3, 2) and ``depth`` (3,) are to compute in.
+    ``fingers`` (3, 2) are in the object's axes, ``depth`` (3,) is to compute in.
     """
     lengths, coefficients = shape.lengths, shape.coefficients
     seen, still, steps, ending = record.seen, record.still, record.steps, record.ending
     steps[i] += bounds.stride
-    fingers_seen(shape.directions, qpos, fingers)
     sigma = 0.0
     for k in range(3):
         sigma += coefficients[k] * qpos[k]
@@ -207,7 +213,6 @@ def look_at(
     return ending[i] == RUNNING
 
 
-@njit(cache=True)
 def observe(
     ids: IntArray,
     qpos: FloatArray,
@@ -215,14 +220,30 @@ def observe(
     shape: Shape,
     bounds: Bounds,
     record: Record,
-) -> IntArray:  # pragma: no cover - compiled
+) -> IntArray:
     """Look at closings ``ids`` of N, qpos and qvel (N, 6); those of them that go on."""
-    fingers = np.empty((3, 2))
-    depth = np.empty(3)
     left = np.empty(len(ids), dtype=np.int64)
+    room = np.empty((3, 2)), np.empty(3)
+    count: int = _observe(ids, qpos, qvel, shape, bounds, record, *room, left)
+    return left[:count]
+
+
+@borrowing
+def _observe(
+    ids: IntArray,
+    qpos: FloatArray,
+    qvel: FloatArray,
+    shape: Shape,
+    bounds: Bounds,
+    record: Record,
+    fingers: FloatArray,
+    depth: FloatArray,
+    left: IntArray,
+) -> int:  # pragma: no cover - compiled
     count = 0
     for i in ids:
+        fingers_seen(shape.directions, qpos[i], fingers)
         if look_at(i, qpos[i], qvel[i], fingers, depth, shape, bounds, record):
             left[count] = i
             count += 1
-    return left[:count].copy()
+    return count

@@ -13,10 +13,10 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.world.hand_in_object import depth_at, edge_square
+from sim.world.machine_loops import borrowing, inlined
 
 CELLS: Final = 256
 """In a row of the grid: a cell is some 4e-3 diameters wide."""
@@ -63,7 +63,7 @@ def near_edges(vertices: FloatArray, radius: float, closings: int) -> NearEdges:
     )
 
 
-@njit(cache=True)
+@borrowing
 def _list_edges(
     vertices: FloatArray, near: NearEdges, column: int, row: int
 ) -> None:  # pragma: no cover - compiled
@@ -91,7 +91,7 @@ def _list_edges(
     near.edges[column, row, 0] = -listed if depth > 0.0 else listed
 
 
-@njit(cache=True)
+@inlined
 def depth_near(
     vertices: FloatArray, x: float, y: float, radius: float, near: NearEdges
 ) -> float:  # pragma: no cover - compiled

@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 import shapely
-from numba import njit
 
 from icage.arrays import FloatArray
+from sim.world.machine_loops import borrowing, inlined
 
 _NO_SIDE = 1e-12
 """[diameter] A side shorter than this (of a shut hand) has no direction."""
@@ -21,7 +21,7 @@ _FARTHER = 1.0 + 1e-9
 """[1] Of a square of a distance: farther for certain, whatever the rounding."""
 
 
-@njit(cache=True)
+@borrowing
 def turn_back(
     points: FloatArray, x: float, y: float, turn: float
 ) -> None:  # pragma: no cover - compiled
@@ -35,7 +35,18 @@ def turn_back(
         points[k, 0], points[k, 1] = cos * u + sin * v, cos * v - sin * u
 
 
-@njit(cache=True)
+@inlined
+def fingers_turned(
+    directions: FloatArray, qpos: FloatArray, cos: float, sin: float, out: FloatArray
+) -> None:  # pragma: no cover - compiled
+    """``fingers_seen`` of an object whose turn has this cosine and sine."""
+    x, y = qpos[3], qpos[4]
+    for k in range(3):
+        u, v = directions[k, 0] * qpos[k] - x, directions[k, 1] * qpos[k] - y
+        out[k, 0], out[k, 1] = cos * u + sin * v, cos * v - sin * u
+
+
+@borrowing
 def fingers_seen(
     directions: FloatArray, qpos: FloatArray, out: FloatArray
 ) -> None:  # pragma: no cover - compiled
@@ -43,12 +54,10 @@ def fingers_seen(
 
     ``directions`` (3, 2) of the slides, ``qpos`` (6,) = three slides, object's x, y, turn.
     """
-    for k in range(3):
-        out[k, 0], out[k, 1] = directions[k, 0] * qpos[k], directions[k, 1] * qpos[k]
-    turn_back(out, qpos[3], qpos[4], qpos[5])
+    fingers_turned(directions, qpos, math.cos(qpos[5]), math.sin(qpos[5]), out)
 
 
-@njit(cache=True)
+@borrowing
 def edge_square(
     ax: float, ay: float, bx: float, by: float, nearest: float
 ) -> float:  # pragma: no cover - compiled
@@ -68,7 +77,7 @@ def edge_square(
     return distance
 
 
-@njit(cache=True)
+@borrowing
 def depth_at(
     vertices: FloatArray, x: float, y: float, radius: float
 ) -> float:  # pragma: no cover - compiled
@@ -91,7 +100,7 @@ def depth_at(
     return radius + signed if inside else radius - signed
 
 
-@njit(cache=True)
+@borrowing
 def depths(
     vertices: FloatArray, fingers: FloatArray, radius: float, out: FloatArray
 ) -> None:  # pragma: no cover - compiled
@@ -106,7 +115,7 @@ def hull_of(vertices: FloatArray) -> FloatArray:
     return np.array(shapely.get_coordinates(hull.normalize())[:-1][::-1])
 
 
-@njit(cache=True)
+@borrowing
 def separated(
     hull: FloatArray, fingers: FloatArray, radius: float
 ) -> bool:  # pragma: no cover - compiled

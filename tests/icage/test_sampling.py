@@ -60,6 +60,62 @@ def test_starts_follow_from_the_seed():
     assert not np.isin(one.placements, other.placements).any()
 
 
+@pytest.mark.parametrize(
+    ("name", "which", "count"),
+    [("T", "guaranteed", 1), ("Z_twofold_multi", "rest", 40), ("T", "guaranteed", 3000)],
+)
+def test_starts_of_each_are_those_of_one(name: str, which: StartSet, count: int):
+    """Whoever is beside it; 3,000 take more hands than are drawn at once."""
+    cage, seeds = cage_of(name), (7, 8, 9)
+    together = starts.draw_starts_of_each(
+        cage, which, count, [np.random.default_rng(seed) for seed in seeds]
+    )
+    for seed, drawn in zip(seeds, together, strict=True):
+        alone = draw_starts(cage, which, count, np.random.default_rng(seed))
+        assert drawn.placements.tobytes() == alone.placements.tobytes()
+        assert drawn.tried == alone.tried
+
+
+def test_of_several_the_one_that_finds_too_few_is_told(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(starts, "TRIES_PER_START", 1)
+    rngs = [np.random.default_rng(0), np.random.default_rng(1)]
+    with pytest.raises(SamplingError, match=r"\d+ of 40000 placements found in \d+ tries"):
+        starts.draw_starts_of_each(cage_of("T"), "guaranteed", 40_000, rngs)
+
+
+def fans(sizes: FloatArray) -> shapely.MultiPolygon:
+    """Triangles in a row, of these areas."""
+    return shapely.MultiPolygon(
+        [
+            shapely.Polygon([(2 * k, 0), (2 * k + 1, 0), (2 * k, 2 * size)])
+            for k, size in enumerate(sizes.tolist())
+        ]
+    )
+
+
+@pytest.mark.parametrize(
+    "sizes",
+    [
+        np.ones(7),
+        np.array([1.0]),
+        np.geomspace(1e-9, 1.0, 60),  # many that the guide takes for one
+        np.geomspace(1.0, 1e-9, 60),
+        np.where(np.arange(50) == 25, 1.0, 1e-14),
+    ],
+    ids=["equal", "one", "growing", "shrinking", "specks"],
+)
+def test_triangles_are_those_of_a_bisection(sizes: FloatArray):
+    area = starts._Area.of(fans(sizes))
+    shares = area.cumulative / area.cumulative[-1]
+    near = [np.nextafter(shares, 0.0), shares, np.nextafter(shares, 1.0)]
+    rng = np.random.default_rng(4)
+    asked = np.concatenate([[0.0, np.nextafter(1.0, 0.0)], *near, rng.random(5000)])
+    asked = asked[asked < 1.0]
+    found = area._triangles(asked)
+    true = np.searchsorted(area.cumulative, asked * area.cumulative[-1], "right")
+    np.testing.assert_array_equal(found, np.minimum(true, len(sizes) - 1))
+
+
 def plain_rejection(cage: Cage, which: StartSet, count: int, seed: int) -> FloatArray:
     """Placements drawn from a box in x, y, theta, sigma that is known to hold the set, no more."""
     rng = np.random.default_rng(seed)

@@ -9,7 +9,8 @@ the object as seen, so it turns about the object's centroid.
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,10 +23,13 @@ from icage.cage import Cage
 from icage.kernels.locate import depth_inside
 from icage.outline import Outline
 from icage.placing.best import place
-from icage.sampling import Box, SamplingError, StartSet, draw_starts
+from icage.sampling import Box, SamplingError, StartSet, draw_starts, draw_starts_of_each
 
 BLOCK: Final = 250
 """[placement] Drawn together; a start depends on the seed and its number, not on the shard."""
+
+_TOGETHER, _KEPT = 16, 64
+"""[block] Drawn at a time, which takes 1.4 MB each; and kept."""
 
 _STREAM, _NOMINAL = 12, 13
 """Of the random numbers of starts."""
@@ -78,22 +82,28 @@ class Intended:
         rows = np.empty((len(numbers), 4))
         blocks = numbers // BLOCK
         with self._lock:
-            for stream, block in sorted(set(zip(streams.tolist(), blocks.tolist(), strict=True))):
-                here = np.flatnonzero((streams == stream) & (blocks == block))
-                rows[here] = self._block(stream, block)[numbers[here] % BLOCK]
+            keys = sorted(set(zip(streams.tolist(), blocks.tolist(), strict=True)))
+            for first in range(0, len(keys), _TOGETHER):
+                for (stream, block), drawn in self._drawn(keys[first : first + _TOGETHER]):
+                    here = np.flatnonzero((streams == stream) & (blocks == block))
+                    rows[here] = drawn[numbers[here] % BLOCK]
         return rows
 
-    def _block(self, stream: int, block: int) -> FloatArray:
-        key = (stream, block)
-        if key not in self._blocks:
-            rng = np.random.default_rng([self._config.seed, _STREAM, stream, block])
-            which: StartSet = "cage" if self._config.starts == "cage" else "guaranteed"
-            if self._box is None:
+    def _drawn(self, keys: list[tuple[int, int]]) -> list[tuple[tuple[int, int], FloatArray]]:
+        """The blocks of some streams, a key each."""
+        which: StartSet = "cage" if self._config.starts == "cage" else "guaranteed"
+        if self._box is None:
+            with _too_small():
                 self._box = Box.around(self._cage, which)
-            while len(self._blocks) >= 64:  # shards come in order: the oldest is not asked again
-                del self._blocks[next(iter(self._blocks))]
-            self._blocks[key] = _drawn(self._cage, which, BLOCK, rng, self._box)
-        return self._blocks[key]
+        new = [key for key in keys if key not in self._blocks]
+        rngs = [np.random.default_rng([self._config.seed, _STREAM, *key]) for key in new]
+        with _too_small():
+            drawn = draw_starts_of_each(self._cage, which, BLOCK, rngs, box=self._box)
+        self._blocks.update(zip(new, (starts.placements for starts in drawn), strict=True))
+        found = [(key, self._blocks[key]) for key in keys]
+        while len(self._blocks) > _KEPT:  # shards come in order: the oldest is not asked again
+            del self._blocks[next(iter(self._blocks))]
+        return found
 
 
 def _nominal(config: StudyConfig, cage: Cage) -> FloatArray:
@@ -112,7 +122,8 @@ def roomiest(cage: Cage, seed: int) -> FloatArray:
     open before it leaves the guaranteed set.
     """
     rng = np.random.default_rng([seed, _NOMINAL])
-    rows = _drawn(cage, "guaranteed", _ROOMY, rng)
+    with _too_small():
+        rows = draw_starts(cage, "guaranteed", _ROOMY, rng).placements
     fingers = cage.hand.fingers(rows).reshape(-1, 2)
     depth = depth_inside(cage.outline.vertices, fingers, cage.finger_radius).reshape(-1, 3)
     first = np.inf if cage.sigma_guaranteed is None else cage.sigma_guaranteed
@@ -120,12 +131,11 @@ def roomiest(cage: Cage, seed: int) -> FloatArray:
     return np.array(rows[int(np.argmax(room))])
 
 
-def _drawn(
-    cage: Cage, which: StartSet, count: int, rng: np.random.Generator, box: Box | None = None
-) -> FloatArray:
-    """Placements (count, 4) of a set; that it is empty or too small is no fault of ours."""
+@contextmanager
+def _too_small() -> Generator[None]:
+    """That a set is empty or too small is no fault of ours."""
     try:
-        return draw_starts(cage, which, count, rng, box=box).placements
+        yield
     except SamplingError as error:
         raise ConfigError(
             f"starts: {error}; a nominal placement of your own (nominal = [x, y, theta, sigma]) or "

@@ -134,11 +134,11 @@ class StudyFolder:
         path = self.path / SHARDS / f"trials-{first:09d}-{last:09d}.parquet"
         with writable(self.path):
             path.parent.mkdir(parents=True, exist_ok=True)
-        self._write(table, path)
+        self._write(table, path, for_long=False)
 
     def finish(self, table: Table) -> None:
         """Write the whole table, then forget the shards."""
-        self._write(table, self.path / TRIALS)
+        self._write(table, self.path / TRIALS, for_long=True)
         self.clear()
 
     def reopen(self, table: Table) -> None:
@@ -235,8 +235,8 @@ class StudyFolder:
         whole = self._rows(self.path / TRIALS)
         return whole or sum(self._rows(path) for path, _ in self._named())
 
-    def _write(self, table: Table, path: Path) -> None:
-        write_table(table, path, {_KEY: self.fingerprint.encode()})
+    def _write(self, table: Table, path: Path, *, for_long: bool) -> None:
+        write_table(table, path, {_KEY: self.fingerprint.encode()}, for_long=for_long)
 
 
 def read_document(folder: Path) -> dict[str, Any] | None:

@@ -131,9 +131,12 @@ def _variants(
     study: Study, values: dict[str, FloatArray], trials: IntArray
 ) -> tuple[list[Variant | None], IntArray]:
     """The variants of trials (n,), each once, and which one each trial has."""
+    keys = study.variants.keys(values, study.design.shapes(trials))
+    which = np.zeros(len(trials), dtype=np.int64)
+    if keys and not any(keys):
+        return [study.variants.planned], which
     number: dict[Key, int] = {}
-    which = np.empty(len(trials), dtype=np.int64)
-    for row, key in enumerate(study.variants.keys(values, study.design.shapes(trials))):
+    for row, key in enumerate(keys):
         which[row] = number.setdefault(key, len(number))
     return [study.variants.make(key) for key in number], which
 
