@@ -40,6 +40,8 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2, help="processes of pytest")
     parser.add_argument("--here", action="store_true", help="use this Python's environment")
     options, further = parser.parse_known_args()
+    # hundreds of processes load the same modules, which pip has left as text
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     if options.here:
         python = Path(sys.executable)
     elif options.lowest:

@@ -17,6 +17,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from tests.oracles.balance import squeezing
 from tests.oracles.geometry import Floats, Ring
 from tests.oracles.targets import offset_corners
 
@@ -273,20 +274,7 @@ def _foot(curve: Curve, element: int, f: Complex) -> Complex:
 
 def squeezes(every: Contacts, rows: NDArray[np.int64], phi: float, diameter: float) -> np.ndarray:
     """Whether forces at contacts (n, k) balance, at where they touch, and squeeze, (n,)."""
-    wrench = _generators(every, rows, phi, diameter)
-    columns_of = wrench.shape[2]
-    jam = np.zeros(len(rows), dtype=np.bool_)
-    rhs = np.array([0.0, 0.0, 0.0, 1.0])
-    for columns in combinations(range(columns_of), 4):
-        basis = wrench[:, :4, columns]
-        solvable = np.abs(np.linalg.det(basis)) > 1e-12
-        if not solvable.any():
-            continue
-        load = np.zeros((len(rows), 4))
-        load[solvable] = np.linalg.solve(basis[solvable], rhs[:, None])[..., 0]
-        work = (load * wrench[:, 4, columns]).sum(axis=1)
-        jam |= solvable & (load >= 0.0).all(axis=1) & (work < -1e-9)
-    return jam
+    return squeezing(_generators(every, rows, phi, diameter))
 
 
 def _generators(every: Contacts, rows: NDArray[np.int64], phi: float, diameter: float) -> Floats:

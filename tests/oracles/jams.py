@@ -16,6 +16,7 @@ import numpy as np
 import shapely
 from scipy.optimize import linprog
 
+from tests.oracles.balance import squeezing
 from tests.oracles.geometry import Floats, Ring
 
 SLACK = 1e-9
@@ -137,17 +138,7 @@ def three_finger_jams(ring: Ring, hand: Floats, sample: Sample, mu: float, below
 
 def squeezes(f: Floats, cones: Floats, diameter: float) -> np.ndarray:
     """Whether forces in the cones (n, 3, 2) [rad] on fingers (n, 3) balance and squeeze, (n,)."""
-    wrench = _generators(f, cones, diameter)
-    jam = np.zeros(len(f), dtype=np.bool_)
-    rhs = np.array([0.0, 0.0, 0.0, 1.0])
-    for columns in combinations(range(6), 4):
-        basis = wrench[:, :4, columns]
-        solvable = np.abs(np.linalg.det(basis)) > 1e-12
-        load = np.zeros((len(f), 4))
-        load[solvable] = np.linalg.solve(basis[solvable], rhs[:, None])[..., 0]
-        work = (load * wrench[:, 4, columns]).sum(axis=1)
-        jam |= solvable & (load >= 0.0).all(axis=1) & (work < -1e-9)
-    return jam
+    return squeezing(_generators(f, cones, diameter))
 
 
 def _generators(f: Floats, cones: Floats, diameter: float) -> Floats:

@@ -34,7 +34,7 @@ def grasps(folder: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Re
     return run
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The table by one worker that nothing has disturbed."""
     place = tmp_path_factory.mktemp("alone")

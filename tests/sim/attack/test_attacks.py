@@ -40,7 +40,7 @@ def random_attacks(openings: np.ndarray, seed: int, threads: int, duration: floa
     return attack(scene, held_model(scene), targets(len(openings)), openings, driver, threads)
 
 
-def guided_attacks(openings: np.ndarray, seed: int, threads: int = 2) -> Attacks:
+def guided_attacks(openings: np.ndarray, seed: int, threads: int = 1) -> Attacks:
     scene, cage = t_cage()
     assert cage.escape_path is not None
     path = object_path(scene, cage.escape_path)

@@ -19,7 +19,7 @@ BRIEF = replace(SimConfig(), max_time=0.5)
 def test_a_jammed_three_edge_grasp_is_turned_by_the_angle_of_friction_at_most(mu: float):
     known = triangle()
     starts = starts_near(known, 5, seed=1, opening=1.3, turn=0.4)
-    row = friction_row(known.scene(BRIEF), known.contacts, starts, mu)
+    row = friction_row(known.scene(BRIEF), known.contacts, starts, mu, threads=1)
     assert row.on_edges >= 4
     assert row.holds
     assert row.worst <= row.bound + SLACK
@@ -32,7 +32,7 @@ def test_the_friction_table(make):
     known = make()
     starts = starts_near(known, 40, seed=2, opening=1.3, turn=0.4)
     scene = known.scene(replace(SimConfig(), max_time=1.0))
-    rows = friction_table(scene, known.contacts, starts)
+    rows = friction_table(scene, known.contacts, starts, threads=1)
     assert [row.mu for row in rows] == [0.0, 0.05, 0.1, 0.2]
     assert all(row.holds for row in rows), rows
     assert rows[0].worst < 1e-6
