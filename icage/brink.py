@@ -21,7 +21,8 @@ from icage.cells.kernels.facet import middles_on_facets
 from icage.cells.kernels.plateau import translations
 from icage.cells.kernels.unpushed import unpushed
 from icage.cells.work import CageWork
-from icage.geometry.exterior import WALL, Pieces
+from icage.geometry.exterior import Pieces
+from icage.geometry.kernels.pieces import WALL
 from icage.geometry.near_frame import NearFrame
 from icage.near_hands import are_beside
 from icage.tolerance import DEPTH_CUT, LEVEL, PLATEAU

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from icage.geometry.exterior import WALL
+from icage.geometry.kernels.pieces import WALL
 from icage.kernels.compiled import compiled
 from icage.kernels.forces import pushing_of
 from icage.tolerance import SAME_POINT
