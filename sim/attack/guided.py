@@ -18,10 +18,10 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.attack.random import PUSH, opening_force
+from sim.world.machine_loops import counting
 from sim.world.scene import Scene
 
 FINE = 2e-3
@@ -227,7 +227,7 @@ class GuidedDriver:
         return held
 
 
-@njit(cache=True)
+@counting
 def _lead(
     ids: IntArray,
     qpos: FloatArray,

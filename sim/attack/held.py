@@ -20,12 +20,12 @@ from enum import IntEnum
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import FloatArray, IntArray
 from sim.world.engine import MjModel, mj, no_log
 from sim.world.hand_in_object import depths, fingers_seen, hull_of, separated
 from sim.world.held_hand import held_batch
+from sim.world.machine_loops import counting
 from sim.world.scene import Scene
 
 
@@ -246,7 +246,7 @@ def attack(
     return lookout.attacks(np.array(positions, copy=True))
 
 
-@njit(cache=True)
+@counting
 def _look(
     ids: IntArray,
     qpos: FloatArray,

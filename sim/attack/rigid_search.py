@@ -16,11 +16,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import FloatArray
 from sim.attack.held import ESCAPED, HELD, Attacks
 from sim.world.hand_in_object import depths, hull_of, separated, turn_back
+from sim.world.machine_loops import counting
 from sim.world.scene import Scene
 
 CLEAR = 1e-5
@@ -112,7 +112,7 @@ def _shape(scene: Scene, opening: float) -> tuple[FloatArray, FloatArray, float]
     return scene.object.vertices, fingers, scene.finger_radius / scene.object.diameter
 
 
-@njit(cache=True)
+@counting
 def _seen(
     fingers: FloatArray, x: float, y: float, turn: float
 ) -> FloatArray:  # pragma: no cover - compiled
@@ -122,7 +122,7 @@ def _seen(
     return out
 
 
-@njit(cache=True)
+@counting
 def _deepest(
     vertices: FloatArray, fingers: FloatArray, radius: float, x: float, y: float, turn: float
 ) -> float:  # pragma: no cover - compiled
@@ -131,7 +131,7 @@ def _deepest(
     return max(depth[0], depth[1], depth[2])
 
 
-@njit(cache=True)
+@counting
 def _free(
     vertices: FloatArray,
     fingers: FloatArray,
@@ -152,7 +152,7 @@ def _free(
     return True
 
 
-@njit(cache=True)
+@counting
 def _cut(
     x: float, y: float, turn: float, step: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -164,7 +164,7 @@ def _cut(
     return share * x, share * y, share * turn
 
 
-@njit(cache=True)
+@counting
 def _grow(
     shape: tuple[FloatArray, FloatArray, float],
     hull: FloatArray,

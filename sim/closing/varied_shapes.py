@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numba import njit
 
 from icage.arrays import BoolArray, FloatArray, IntArray
 from sim.closing.approach import approached
@@ -22,6 +21,7 @@ from sim.closing.push import push
 from sim.closing.step_check import RUNNING, SETTLED, StepCheck
 from sim.closing.varied import Setting, Worlds, expand, own_model, settings
 from sim.world.engine import Batch, MjModel, mj, no_log
+from sim.world.machine_loops import counting
 from sim.world.scene import Scene
 
 LOOK_EVERY: Final = 5
@@ -147,7 +147,7 @@ def _layout(model: MjModel) -> tuple[int, ...]:
     return tuple(int(getattr(model, name)) for name in names)
 
 
-@njit(cache=True)
+@counting
 def _pressed(
     ids: IntArray, force: FloatArray, warning: IntArray, peak: FloatArray
 ) -> BoolArray:  # pragma: no cover - compiled

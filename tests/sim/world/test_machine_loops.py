@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 import pytest
 
+import sim
 from sim.closing import approach, computed_step, look, near_edges, push_loop
 from sim.world import hand_in_object
-from sim.world.machine_loops import borrowing, inlined
+from sim.world.machine_loops import FILES, SOURCES, borrowing, inlined
 
 ROOMS = (approach, computed_step, look, near_edges, push_loop, hand_in_object)
 
@@ -32,6 +35,22 @@ def test_all_loops_count_no_references_and_release_pythons_lock() -> None:
         assert loop.targetoptions["nogil"], name
         assert not loop.targetoptions["_nrt"], name
         assert not loop.targetoptions.get("fastmath"), name
+
+
+def test_all_files_with_loops_are_in_the_stamp_of_every_loop() -> None:
+    """Or machine code would stay what it was after a change of what it is made of."""
+    room = Path(sim.__file__).parent
+    with_loops = {
+        path.relative_to(room).as_posix()
+        for path in room.glob("**/*.py")
+        if "numba" in (text := path.read_text(encoding="utf-8")) or "machine_loops" in text
+    }
+    assert with_loops == set(FILES)
+    for module in FILES:
+        name = "sim." + module.removesuffix(".py").replace("/", ".")
+        for loop in vars(import_module(name)).values():
+            if isinstance(loop, numba.core.registry.CPUDispatcher):
+                assert loop._cache._cache_file._source_stamp == SOURCES.digest
 
 
 @pytest.mark.parametrize("how", [borrowing, inlined])
