@@ -17,6 +17,7 @@ from typing import Any, Final
 
 import llvmlite
 import numba
+from numba.core import cgutils, pythonapi
 from numba.core.event import Event, Listener, register
 from numba.core.runtime.nrt import rtsys
 
@@ -28,6 +29,9 @@ TOOLS: Final = f"numba{numba.__version__}-llvmlite{llvmlite.__version__}"
 
 _INNER: Final = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """What only other kernels call needs no way in from Python, which would be compiled with it."""
+
+_OURS: Final = ("icage.", "sim.", "tests")
+"""Modules whose named tuples and enumerations are handed to Python as below."""
 
 _dispatchers: list[Any] = []
 """All kernels of this process that have met numba."""
@@ -64,7 +68,7 @@ def stamped(
     try:
         dispatcher: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
-        _load_without_blas()
+        _ready_to_compile()
         return _kept(numba.njit(**options)(function))
     # private names of numba's, checked by a test: without them the cache would go stale unseen
     cache = dispatcher._cache
@@ -138,14 +142,76 @@ def _without_what_compiles(cache: Any) -> Callable[[Any, Any], Any]:
             found = cache._load_overload(signature, target)
             if found is not None:
                 return found
-        _load_without_blas()
+        _ready_to_compile()
         return None
 
     return load
 
 
+def _hand_over_safely() -> None:
+    """Let machine code stop where a signal that came during a call is raised while it hands over.
+
+    The first Python that is run after a long search is what makes its answer an object: there
+    Ctrl-C, or any handler that raises, is heard of. numba does not ask whether an object came of
+    it, goes on without one, and the process dies. Here no class is looked up or called in Python,
+    and where there is no object the call ends with what was raised.
+    """
+    import_module("numba.core.boxing")
+    registry: Any = pythonapi  # a private name of numba's, checked by a test
+    by_type = registry._boxers.functions
+
+    def constant(c: Any, value: object) -> Any:
+        return c.env_manager.read_const(c.env_manager.add_const(value))
+
+    def items(typ: Any, value: Any, c: Any) -> Any:
+        builder = c.builder
+        made = cgutils.alloca_once_value(builder, c.pyapi.get_null_object())
+        end = builder.append_basic_block("end")
+        whole = c.pyapi.tuple_new(typ.count)
+        for k, of_item in enumerate(typ):
+            item = c.box(of_item, builder.extract_value(value, k))
+            with builder.if_then(cgutils.is_null(builder, item), likely=False):
+                c.pyapi.decref(whole)
+                builder.branch(end)
+            c.pyapi.tuple_setitem(whole, k, item)
+        builder.store(whole, made)
+        builder.branch(end)
+        builder.position_at_end(end)
+        return builder.load(made)
+
+    def named(typ: Any, value: Any, c: Any) -> Any:
+        builder = c.builder
+        made = cgutils.alloca_once_value(builder, c.pyapi.get_null_object())
+        whole = items(typ, value, c)
+        with cgutils.if_likely(builder, cgutils.is_not_null(builder, whole)):
+            new, of_class = constant(c, tuple.__new__), constant(c, typ.instance_class)
+            builder.store(c.pyapi.call_function_objargs(new, (of_class, whole)), made)
+            c.pyapi.decref(whole)
+        return builder.load(made)
+
+    def member(typ: Any, value: Any, c: Any) -> Any:
+        known = constant(c, {one.value: one for one in typ.instance_class})
+        key = c.box(typ.dtype, value)
+        found = c.pyapi.dict_getitem(known, key)
+        c.pyapi.incref(found)
+        c.pyapi.decref(key)
+        return found
+
+    def instead_of(usual: Any, ours: Any) -> Any:
+        def box(typ: Any, value: Any, c: Any) -> Any:
+            is_ours = typ.instance_class.__module__.startswith(_OURS)
+            return (ours if is_ours else usual)(typ, value, c)
+
+        return box
+
+    for one in (numba.types.NamedTuple, numba.types.NamedUniTuple):
+        by_type[one] = instead_of(by_type[one], named)
+    by_type[numba.types.Tuple] = by_type[numba.types.UniTuple] = items
+    by_type[numba.types.EnumMember] = instead_of(by_type[numba.types.EnumMember], member)
+
+
 @lru_cache(maxsize=1)
-def _load_without_blas() -> None:
+def _ready_to_compile() -> None:
     """Load what numba has for arrays, but not scipy.
 
     numba asks there whether scipy's BLAS is at hand, which takes as long as a plan. No kernel uses
@@ -158,6 +224,7 @@ def _load_without_blas() -> None:
         import_module("numba.np.arraymath")
     finally:
         numba_linalg.ensure_blas = asks
+    _hand_over_safely()
 
 
 register("numba:compile", _Watch())
