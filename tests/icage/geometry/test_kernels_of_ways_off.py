@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
+from icage.contacts import _check_pockets
 from icage.geometry.kernels.ways_off import _clear_ahead, _off_nearest, all_can_leave
+from icage.outline import Outline
 from tests.oracles.geometry import Floats
 
 pytestmark = pytest.mark.usefixtures("plain")
@@ -78,3 +80,24 @@ def test_who_stands_in_a_closed_pocket_cannot_leave() -> None:
     # a disc that is wedged between two edges leaves by another direction than off the nearest one
     notch = np.array([[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]], float)
     assert all_can_leave(*notch.T.copy(), np.array([[1.0, 1.2]]), 0.3, 1e-7)
+
+
+def test_a_fine_hollow_is_no_pocket() -> None:
+    """The library simplifies an outline before it grows it, and may fill hollows by that."""
+    rng = np.random.default_rng(1635)
+    corners = star(rng, int(rng.integers(5, 14)))
+    grown = shapely.Polygon(corners).buffer(0.05, quad_segs=32)
+    assert isinstance(grown, shapely.Polygon)
+    ring = shapely.get_coordinates(shapely.orient_polygons(grown).exterior)[:-1]
+    outline, radius = Outline(ring), 0.4
+    side = np.roll(ring, -1, axis=0) - ring
+    out = np.column_stack([side[:, 1], -side[:, 0]]) / np.hypot(*side.T)[:, None]
+    centres = ring + 0.5 * side + radius * out
+    angle = np.arctan2(out[:, 1:], out[:, :1]) + 2.0 * np.pi * np.arange(16) / 16
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=2)
+    rays = shapely.linestrings(np.stack([centres[:, None] + t * way for t in (0.0, 9.0)], axis=2))
+    gap = np.asarray(shapely.distance(rays, outline.polygon)).max(axis=1)
+    free = np.flatnonzero(gap > radius - 1e-12)  # nothing is in the way, in some direction
+    assert len(free) > 50
+    for k in free.tolist():
+        _check_pockets(outline, centres[[k, k, k]], radius, "")
