@@ -147,23 +147,26 @@ def _most_violated(rows, n, wx, wy):
 
 @compiled_borrowing
 def _certified(rows, n, worst, wx, wy, first, second):
-    """Is |w| within ``worst`` of the truth? Weak duality below, a fat wedge of room above."""
+    """Is |w| within ``worst`` of the truth? A fat wedge of room says so, above and below.
+
+    Above: a point in it is clear of every row that rounding may move. Below: w / |w| is a sum of
+    two of these rows times multipliers that are not negative, and what rounding can lower by weak
+    duality is its part in each times the multiplier. With the rows at the angles a and b to both
+    sides of w the multipliers add up to cos((a - b) / 2) / cos((a + b) / 2), and the wedge asks for
+    1 / cos((a + b) / 2) or more.
+    """
     norm = np.hypot(wx, wy)
     if norm == 0.0:
         return FOUND
     ux = wx / norm
     uy = wy / norm
     shift = rows[first, 4]
-    below = rows[first, 4]
     if second >= 0:
         det = rows[first, 0] * rows[second, 1] - rows[first, 1] * rows[second, 0]
         if abs(det) < _PARALLEL:
             return UNSURE
-        mult_1 = (ux * rows[second, 1] - uy * rows[second, 0]) / det
-        mult_2 = (rows[first, 0] * uy - rows[first, 1] * ux) / det
-        below = abs(mult_1) * rows[first, 4] + abs(mult_2) * rows[second, 4]
         shift = (rows[first, 4] + rows[second, 4]) / abs(det)
-    if below > worst or shift > 10.0 * worst:
+    if shift > 10.0 * worst:
         return UNSURE
     widest = 0.0
     narrowest = 0.0
