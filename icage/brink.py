@@ -1,9 +1,9 @@
 """Where closing may stop although an arbitrarily small push leads on: hands that stand on a brink.
 
-A hand may be at rest with a finger exactly at the end of an edge, or with a disc where an edge goes
-over into the arc round its vertex. Sigma has a minimum there to one side and none to the other, so
-the hand is in no level; but who comes along the edge stops. A minimum right beside such an end, too
-shallow to count as one, is the same. Our own. [docs/theory.md, Sec. 2.7]
+The forces on a hand may balance with a finger exactly at the end of an edge, or with a disc where
+an edge goes over into the arc round its vertex. Sigma has a minimum there to one side and none to
+the other, so the hand is in no level; but who comes along the edge stops. A minimum right beside
+such an end, too shallow to count as one, is the same. Our own. [docs/theory.md, Sec. 2.7]
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from icage.arrays import FloatArray, IntArray, read_only
 from icage.cells.free_space import Configuration
-from icage.cells.kernels.columns import BIRTH_SIGMA, BIRTH_WX, BORN_FINGER, BORN_SLOT
+from icage.cells.kernels.columns import BIRTH_WX, BORN_FINGER, BORN_SLOT
 from icage.cells.kernels.facet import middles_on_facets
 from icage.cells.kernels.plateau import translations
 from icage.cells.kernels.unpushed import unpushed
@@ -41,7 +41,7 @@ _NEARLY: Final = 0.1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Brink(Value):
-    """The least hand below sigma_first that is at rest short of the target, on one side only.
+    """The least hand below sigma_first, short of the target, that balances and is no minimum.
 
     Attributes
     ----------
@@ -64,18 +64,22 @@ def brink_of(cage: Cage, work: CageWork) -> Brink | None:
     Such a hand is the least one of a cell that holds its better side, and the forces of what its
     fingers touch balance there without those of the edges that pieces share. Every cell of the
     target's component below sigma_first is looked at. With discs, Newton's method finds the hands
-    at rest on the true curve beside these least ones; what is no grasp of the plan is a brink.
+    that balance on the true curve beside these least ones; what is no grasp of the plan is a brink.
     """
     nodes, level = work.below_first(cage.sigma_first)
     if not len(nodes):
         return None
-    at_rest = _on_edges if cage.finger_radius == 0.0 else _on_true_curve
-    found = list(at_rest(cage, work, nodes, level))
-    if not found:
+    size = cage.outline.diameter
+    # a hand as small as the target is the target, on its plateau perhaps
+    least = cage.sigma_0 + 2.0 * DEPTH_CUT * size
+    points = cage.finger_radius == 0.0
+    found = _on_edges(cage, work, nodes, level) if points else _on_true_curve(cage, work, nodes)
+    stops = [one for one in found if one.sigma > least]
+    if not stops:
         return None
-    hands = np.array([one.contacts for one in found])
-    near = are_beside(hands, cage.contacts, cage.outline.diameter)
-    others = [one for one, own in zip(found, near.tolist(), strict=True) if not own]
+    hands = np.array([one.contacts for one in stops])
+    near = are_beside(hands, cage.contacts, size).tolist()
+    others = [one for one, own in zip(stops, near, strict=True) if not own]
     return min(others, key=lambda one: one.sigma, default=None)
 
 
@@ -83,9 +87,6 @@ def _on_edges(cage: Cage, work: CageWork, nodes: IntArray, level: FloatArray) ->
     """Hands of point fingers that balance, of these nodes (n,) with their levels (n,) [unit]."""
     free_space = work.search.free_space
     pieces, z = free_space.pieces, free_space.z
-    # a hand as small as the target is the target
-    above = work.tree.birth[nodes, BIRTH_SIGMA] > cage.sigma_0 + DEPTH_CUT * pieces.diameter
-    nodes, level = nodes[above], level[above]
     hands, share = _least_and_unpushed(work, nodes)
     frame = NearFrame.of(cage.outline)
     for k in np.flatnonzero(share <= _PUSHED).tolist():
@@ -120,9 +121,7 @@ def _hollow_corners(pieces: Pieces) -> tuple[IntArray, IntArray]:
     return np.where(hollow, ends_at, -1), np.where(hollow, begins_at, -1)
 
 
-def _on_true_curve(
-    cage: Cage, work: CageWork, nodes: IntArray, level: FloatArray
-) -> Iterator[Brink]:
+def _on_true_curve(cage: Cage, work: CageWork, nodes: IntArray) -> Iterator[Brink]:
     """Hands of discs that balance on the true curve beside the least ones of these nodes (n,)."""
     from icage.discs.critical import CriticalHands
     from icage.discs.true_levels import REACH, SAME
@@ -132,8 +131,11 @@ def _on_true_curve(
     grasps = [frame.into(grasp.contacts) for grasp in cage.grasps]
     top = np.inf if cage.sigma_first is None else cage.sigma_first * (1.0 - LEVEL)
     reach = REACH * work.sagitta + SAME * size
-    likely = work.least_hands_of(nodes[_least_and_unpushed(work, nodes)[1] <= _NEARLY])
-    for stop in critical.stops_near(work.least_hands_of(nodes), likely, reach):
+    hands = work.least_hands_of(nodes)
+    # what is found there is the target
+    away = ~are_beside(hands, frame.into(cage.contacts), size)
+    likely = away & (_least_and_unpushed(work, nodes)[1] <= _NEARLY)
+    for stop in critical.stops_near(hands[away], hands[likely], reach):
         # level: it slides, on a shelf
         if stop.level or stop.sigma >= top:
             continue

@@ -15,7 +15,7 @@ def are_beside(hands: FloatArray, other: FloatArray, diameter: float) -> BoolArr
     --------
     >>> hand = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]])
     >>> are_beside(np.stack([hand, hand + 0.003, hand + 0.01]), hand, 1.0).tolist()
-    [True, False, False]
+    [True, True, False]
     """
     off = hands.mean(axis=1) - other.mean(axis=0)
     side, own = hands[:, 1] - hands[:, 0], other[1] - other[0]

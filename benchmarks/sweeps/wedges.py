@@ -6,8 +6,10 @@ Objects of ten families, half of them with edges in two or three directions only
 each, points and discs. From placements of the guaranteed set an exact closing without friction that
 knows no cells (``tests.oracles.planar_closing``) is made with fingers 1e-5 to 1e-8 of the diameter
 thinner and thicker; each has to end next to the target. Of a wedge some should not, from the set
-that would be guaranteed without it. For points the outline shrinks or grows: a closing rests on the
-tip of a vertex that is round with so small a radius.
+that would be guaranteed without it. On a brink some of those from beside it should stop (of points
+few do: this closing lets a finger that has come to a vertex go on to either side). For points the
+outline shrinks or grows: a closing rests on the tip of a vertex that is round with so small a
+radius.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from numpy.random import Generator
 
 import icage
 from benchmarks.sweeps.shelves import boxes
-from icage import Cage, Case, JamTolerance, Outline, WedgeKind
+from icage import Brink, Cage, Case, JamTolerance, Outline
 from icage.arrays import FloatArray
 from icage.grasps.planned import planned_or_why
 from icage.grasps.search import best_grasps
@@ -46,6 +48,9 @@ CHANGES: Final = tuple(sign * 10.0**-k for k in (5, 6, 7, 8) for sign in (1.0, -
 """[diameter] Changes of the fingers' radius."""
 
 TOP: Final = 3
+BESIDE: Final = 100
+"""Closings from beside a brink."""
+
 EAGERNESS: Final = (0.3, 100.0)
 
 
@@ -84,7 +89,8 @@ def cages_of(case: Case, rng: Generator) -> list[Cage]:
 
 def unlimited(cage: Cage) -> float:
     """[unit] The level that would be guaranteed if there were no wedge."""
-    levels = (cage.sigma_first, None if cage.shelf is None else cage.shelf.sigma)
+    stops = (cage.shelf, cage.brink)
+    levels = (cage.sigma_first, *(None if one is None else one.sigma for one in stops))
     return min((one for one in levels if one is not None), default=np.inf)
 
 
@@ -118,6 +124,20 @@ def is_target(cage: Cage, contacts: FloatArray) -> bool:
     side, own = contacts[1] - contacts[0], cage.contacts[1] - cage.contacts[0]
     turn = np.angle(complex(*side) / complex(*own)) if np.hypot(*side) > 0.0 else np.pi
     return bool(off <= near.position * cage.outline.diameter and abs(turn) <= near.angle)
+
+
+def stops_on(cage: Cage, brink: Brink, rng: Generator) -> bool:
+    """Whether any closing from beside a brink stops on it: those from one side should."""
+    size = cage.outline.diameter
+    for _ in range(BESIDE):
+        off = rng.normal(size=4) * [1e-3 * size, 1e-3 * size, 2e-3, 2e-3 * size]
+        row = icage.Placement.from_contacts(brink.contacts).as_array() + np.array(
+            [*off[:3], abs(off[3])]
+        )
+        end = end_of(cage, row, 0.0, float(rng.choice(EAGERNESS)))
+        if end is not None and np.abs(end - brink.contacts).max() < 3e-4 * size:
+            return True
+    return False
 
 
 def judged(cage: Cage, count: int, rng: Generator) -> Counter[str]:
@@ -166,12 +186,15 @@ def main() -> int:
                 found = judged(cage, options.starts, rng)
                 total += found
                 total["cages"] += 1
-                wedge = cage.wedge
+                wedge, brink = cage.wedge, cage.brink
+                if brink is not None:
+                    total["brinks"] += 1
+                    total["brinks seen"] += stops_on(cage, brink, rng)
                 if wedge is not None:
                     total[f"wedges ({wedge.kind})"] += 1
                     seen = found["limited, ended elsewhere"] > 0
                     total["wedges seen"] += seen
-                    if not seen and wedge.kind != WedgeKind.YIELDS:
+                    if not seen:
                         print(f"  {family.__name__} {k}: not seen: {cage}, {wedge}")
                 if found["guaranteed, ended elsewhere"]:
                     print(f"  {family.__name__} {k}: {cage}, {wedge}: {dict(found)}")
