@@ -164,7 +164,9 @@ def draw_starts_of_each(
         )
     box = Box.around(cage, which) if box is None else box
     drawings = [_Drawing(rng, count) for rng in rngs]
-    while lacking := [drawing for drawing in drawings if drawing.lacking]:
+    while lacking := [drawing for drawing in drawings if drawing.have < count]:
+        # what a first chunk is not enough for is drawn one by one: it may be hopeless, for all
+        lacking = [drawing for drawing in lacking if not drawing.tried] or lacking[:1]
         hands = [drawing.hands() for drawing in lacking]
         rows, places = box.of_the_set(cage, which, _Hands.joined(hands))
         ends = np.cumsum([len(some.kept) for some in hands])
@@ -174,12 +176,11 @@ def draw_starts_of_each(
             found = drawing.take(rows[first:last], places[first:last] - begin)
             if progress is not None and found is not None:
                 progress(found)
-    for drawing in drawings:
-        if drawing.have < count:
-            raise SamplingError(
-                f"the {which} set is too small to draw from: {drawing.have} of {count} placements "
-                f"found in {drawing.tried} tries"
-            )
+            if drawing.have < count and drawing.tried >= TRIES_PER_START * count:
+                raise SamplingError(
+                    f"the {which} set is too small to draw from: {drawing.have} of {count} "
+                    f"placements found in {drawing.tried} tries"
+                )
     return [drawing.starts() for drawing in drawings]
 
 
@@ -201,11 +202,6 @@ class _Drawing:
     _size: int = 0
     _found: int = 0
     _last: int = 0
-
-    @property
-    def lacking(self) -> bool:
-        """Whether hands are still to be looked at."""
-        return self.have < self.count and self.tried < TRIES_PER_START * self.count
 
     def hands(self) -> _Hands:
         """The hands to look at next."""

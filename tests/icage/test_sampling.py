@@ -76,11 +76,23 @@ def test_starts_of_each_are_those_of_one(name: str, which: StartSet, count: int)
         assert drawn.tried == alone.tried
 
 
-def test_of_several_the_one_that_finds_too_few_is_told(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(starts, "TRIES_PER_START", 1)
-    rngs = [np.random.default_rng(0), np.random.default_rng(1)]
-    with pytest.raises(SamplingError, match=r"\d+ of 40000 placements found in \d+ tries"):
-        starts.draw_starts_of_each(cage_of("T"), "guaranteed", 40_000, rngs)
+def test_a_set_that_is_too_small_is_given_up_once_for_all(monkeypatch: pytest.MonkeyPatch):
+    """Of many generators the first is drawn to its end, and the others have had a chunk each."""
+    monkeypatch.setattr(starts, "TRIES_PER_START", 100)
+    monkeypatch.setattr(starts, "_CHUNK", 10)
+    looked: list[int] = []
+    inside = starts.Box.of_the_set
+
+    def nothing(box: starts.Box, cage: Cage, which: StartSet, hands: starts._Hands):
+        looked.append(len(hands.kept))
+        rows, places = inside(box, cage, which, hands)
+        return rows[:0], places[:0]
+
+    monkeypatch.setattr(starts.Box, "of_the_set", nothing)
+    rngs = [np.random.default_rng(seed) for seed in range(8)]
+    with pytest.raises(SamplingError, match="0 of 5 placements found in 500 tries"):
+        starts.draw_starts_of_each(cage_of("T"), "guaranteed", 5, rngs)
+    assert sum(looked) == 8 * 10 + 490
 
 
 def fans(sizes: FloatArray) -> shapely.MultiPolygon:
