@@ -54,6 +54,10 @@ def main() -> int:
     else:
         python = environment(".venv", "[dev]")
     only_tests = options.lowest or options.newest
+    if only_tests:
+        # numba's files are named by Python's version and not by numba's: those of tests that run
+        # beside each other would be written over and over
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(python.parent.parent / "kernels"))
     compiling = None if only_tests or further else compile_kernels(python)
     failed = [] if only_tests else [name for name in CHECKS if not check(name, python)]
     if compiling is not None:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from icage.arrays import FloatArray, IntArray
-from sim.attack.random import PUSH, opening_force
+from sim.attack.random import PUSH
 from sim.world.machine_loops import counting
 from sim.world.scene import Scene
 
@@ -60,6 +60,22 @@ class _Carrots(NamedTuple):
     waited: FloatArray
     back_to: FloatArray
     slow_to: FloatArray
+
+
+class _Hand(NamedTuple):
+    """What opens the hand: as ``sim.attack.random.opening_force``, towards the carrot's sigma.
+
+    ``rate`` and ``limit`` are of the motor's control, ``widest`` [diameter] is the path's largest
+    sigma, ``openings`` (N,) [diameter] where the stop is, ``jitter`` (N, pieces, 3) the random
+    forces on the object.
+    """
+
+    rate: float
+    limit: float
+    widest: float
+    tendon: FloatArray
+    openings: FloatArray
+    jitter: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +178,7 @@ class GuidedDriver:
     _tries: IntArray = field(init=False, repr=False)
     _back_to: FloatArray = field(init=False, repr=False)
     _slow_to: FloatArray = field(init=False, repr=False)
-    _widest: float = field(init=False, repr=False)
+    _told: tuple[FloatArray, float, _Spring, _Carrots, _Hand] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         count, pull = len(self.openings), self.pull
@@ -179,7 +195,30 @@ class GuidedDriver:
         object.__setattr__(self, "_tries", np.zeros(count, dtype=np.int64))
         object.__setattr__(self, "_back_to", np.full(count, np.inf))
         object.__setattr__(self, "_slow_to", np.zeros(count))
-        object.__setattr__(self, "_widest", float(self.path[:, 3].max()))
+        object.__setattr__(self, "_told", self._gathered())
+
+    def _gathered(self) -> tuple[FloatArray, float, _Spring, _Carrots, _Hand]:
+        """What the compiled loop reads and updates: the same arrays at every step."""
+        pull, scene = self.pull, self.scene
+        damping, kinematics = scene.config.object_damping, scene.kinematics
+        finger, spread = scene.config.finger_damping, kinematics.spread
+        spring = _Spring(
+            pull.lag,
+            pull.rate * damping,
+            pull.speed * damping,
+            scene.object.gyration_squared,
+            pull.slow,
+        )
+        carrots = _Carrots(self._pace, self._at, self._waited, self._back_to, self._slow_to)
+        hand = _Hand(
+            pull.grip_rate * finger * spread * spread,
+            pull.grip * finger * spread,
+            float(self.path[:, 3].max()),
+            kinematics.tendon_coefficients,
+            self.openings,
+            self._jitter,
+        )
+        return self.path, scene.config.time_step, spring, carrots, hand
 
     @property
     def max_steps(self) -> int:
@@ -190,27 +229,12 @@ class GuidedDriver:
         self, ids: IntArray, step: int, qpos: FloatArray, wrench: FloatArray, motor: FloatArray
     ) -> IntArray:
         """Advance the carrots, pull the objects after them."""
-        pull, dt = self.pull, self.scene.config.time_step
-        damping = self.scene.config.object_damping
-        goal = np.empty((len(ids), 4))
-        lead: Callable[..., None] = _lead
-        spring = _Spring(
-            pull.lag,
-            pull.rate * damping,
-            pull.speed * damping,
-            self.scene.object.gyration_squared,
-            pull.slow,
+        pull = self.pull
+        piece = min(
+            int(step * self.scene.config.time_step / pull.jitter_time), self._jitter.shape[1] - 1
         )
-        carrots = _Carrots(self._pace, self._at, self._waited, self._back_to, self._slow_to)
-        lead(ids, qpos, self.path, dt, spring, carrots, goal, wrench)
-        piece = min(int(step * dt / pull.jitter_time), self._jitter.shape[1] - 1)
-        wrench[ids] += self._jitter[ids, piece]
-        stop = self.openings[ids]
-        wider = np.maximum(stop / self._widest, 1.0)
-        wanted = goal[:, 3] * wider
-        sigma = np.minimum(wanted, stop * (1.0 + _AT_STOP))
-        sigma = np.where(wanted >= stop * (1.0 - _AT_STOP), stop * PUSH, sigma)
-        motor[ids] = opening_force(self.scene, sigma, qpos[ids], pull.grip_rate, pull.grip)
+        lead: Callable[..., None] = _lead
+        lead(ids, qpos, piece, *self._told, wrench, motor)
         stuck = ids[self._waited[ids] > pull.patience]
         return self._stuck(stuck) if len(stuck) else stuck
 
@@ -231,25 +255,30 @@ class GuidedDriver:
 def _lead(
     ids: IntArray,
     qpos: FloatArray,
+    piece: int,
     path: FloatArray,
     dt: float,
     spring: _Spring,
     carrots: _Carrots,
-    goal: FloatArray,
+    hand: _Hand,
     wrench: FloatArray,
+    motor: FloatArray,
 ) -> None:  # pragma: no cover - compiled
     lag, stiffness, force, spin, slow = spring
     pace, at, waited, back_to, slow_to = carrots
+    rate, limit, widest, tendon, openings, jitter = hand
     last = path.shape[0] - 1
     end = path[last, 4]
-    for n in range(len(ids)):
-        i = ids[n]
+    most = force * math.sqrt(spin)
+    for i in ids:
         k = min(max(np.searchsorted(path[:, 4], at[i], side="right") - 1, 0), last - 1)
-        span = path[k + 1, 4] - path[k, 4]
-        share = min((at[i] - path[k, 4]) / span, 1.0) if span > 0.0 else 1.0
-        for j in range(4):
-            goal[n, j] = path[k, j] + share * (path[k + 1, j] - path[k, j])
-        ex, ey, turn = goal[n, 0] - qpos[i, 3], goal[n, 1] - qpos[i, 4], goal[n, 2] - qpos[i, 5]
+        here, there = path[k], path[k + 1]
+        span = there[4] - here[4]
+        share = min((at[i] - here[4]) / span, 1.0) if span > 0.0 else 1.0
+        ex = here[0] + share * (there[0] - here[0]) - qpos[i, 3]
+        ey = here[1] + share * (there[1] - here[1]) - qpos[i, 4]
+        turn = here[2] + share * (there[2] - here[2]) - qpos[i, 5]
+        goal = here[3] + share * (there[3] - here[3])
         away = math.hypot(ex, ey)
         if at[i] > back_to[i]:  # on its way back it waits for nobody
             at[i] = max(at[i] - pace[i] * dt, back_to[i])
@@ -263,5 +292,14 @@ def _lead(
             waited[i] += dt
         cut = stiffness * min(1.0, force / (stiffness * away)) if away > 0.0 else 0.0
         wrench[i, 0], wrench[i, 1] = cut * ex, cut * ey
-        most = force * math.sqrt(spin)
         wrench[i, 2] = min(max(stiffness * spin * turn, -most), most)
+        wrench[i] += jitter[i, piece]
+        stop, sigma = openings[i], 0.0
+        wanted = goal * np.maximum(stop / widest, 1.0)
+        if wanted >= stop * (1.0 - _AT_STOP):
+            asked = stop * PUSH
+        else:
+            asked = np.minimum(wanted, stop * (1.0 + _AT_STOP))
+        for j in range(len(tendon)):
+            sigma += tendon[j] * qpos[i, j]
+        motor[i] = np.minimum(np.maximum(rate * (asked - sigma), -limit), limit)

@@ -231,7 +231,7 @@ def attack(
             applied[:, 3:6] = wrench
             control[:, 0] = motor
             try:
-                batch.step(running.astype(np.int32))
+                batch.step(None if len(running) == count else running.astype(np.int32))
             except mj.batch.SimulationError as error:
                 ending[error.ids] = DIVERGED
             lookout.look(running, step, positions, velocities)

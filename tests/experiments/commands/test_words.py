@@ -79,12 +79,6 @@ def test_the_sketch_of_the_angles_is_in_help_and_formats(capsys: Any):
     assert "an equilateral hand is (60, 120)" in line
 
 
-def test_the_head_of_an_escape_names_the_bound_that_is_computed(capsys: Any):
-    told = here(capsys, "escape", HAMMER, "--attacks", "1", "--threads", "1").out
-    assert "exact one-sided bound, Clopper-Pearson" in told
-    assert "Wilson" not in told
-
-
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_help_text_is_a_scrap(command: str, capsys: Any):
     """No option is explained by its default alone."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from experiments.cases.with_discs import PhysicalCase, physical_case
+from experiments.escape.document import escape_table
 from experiments.escape.run import AttackResult, Escape, at, judged
 from experiments.escape.setup import AttackSetup
 from icage.formats.case_json import read_case
@@ -81,6 +83,18 @@ def test_every_fault_fails(changed: dict[str, Any], words: str):
     assert any(words in sentence for sentence in result.failures)
 
 
+def test_the_head_of_the_table_names_the_bound_that_is_computed():
+    done = judged(faked())
+    assert done.cage.sigma_max is not None
+    setup = AttackSetup.of(done.physical, 0.99 * done.cage.sigma_max, 1)
+    _says_which_bound("\n".join(escape_table(replace(done, setup=setup))))
+
+
+def _says_which_bound(told: str) -> None:
+    assert "exact one-sided bound, Clopper-Pearson" in told
+    assert "Wilson" not in told
+
+
 def test_a_cage_thinner_than_the_penetration_is_not_judged():
     result = judged(faked(below=3, depth=0.02))
     assert result.verdict == "too_thin_for_physics"
@@ -114,6 +128,7 @@ def test_the_command_on_the_t(tmp_path: Path, capsys: Any):
     few = ("--attacks", "2", "--threads", "1")
     result = here(capsys, "escape", str(case), *few, "--json", str(out))
     assert result.code == 0, result
+    _says_which_bound(result.out)
     document = json.loads(out.read_text())
     assert document["verdict"] == "ok"
     for name in ("random", "guided"):
