@@ -14,17 +14,17 @@ import numpy as np
 
 from icage.arrays import AnyArray, FloatArray, IntArray
 from icage.cells.free_space import FreeSpace
+from icage.cells.kernels.basins import basins_of, ends_of_basins, least_forest
 from icage.cells.kernels.inhabited import extents_of, inhabited_cells
 from icage.cells.kernels.whole import (
-    Ends,
-    LeastPoints,
     Passes,
-    ends_of_minima,
+    cells_by_piece,
+    edges_that_lead_nowhere,
     least_hands,
+    least_of_isolated,
     least_passes,
-    least_points,
-    passes_between,
-    rows_of,
+    lower_at_walls,
+    passes_from,
 )
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
@@ -90,25 +90,46 @@ def minima_in(free_space: FreeSpace, workers: int = 1) -> Minima:
     InputError:
         More than ``MOST_CELLS`` cells hold a hand.
     """
-    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
-    cap = _AT_CAP * free_space.cap
     with ThreadPoolExecutor(max_workers=workers) as threads:
         cells = _cells_with_a_hand(free_space, threads)
-        row = rows_of(cells, pieces.total)
-        parts = _shared(
-            threads, len(cells), _STRETCH,
-            lambda a, b: passes_between(pieces, z, cells, row, a, b, cap, worst),
-        )  # fmt: skip
-        passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-        least = least_passes(len(cells), passes.lower, passes.upper, passes.sigma)
-        parts = _shared(
-            threads, len(cells), _STRETCH,
-            lambda a, b: least_points(pieces, z, cells, least, a, b, cap, worst),
-        )  # fmt: skip
-        low = LeastPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-    order = np.argsort(passes.sigma, kind="stable")
-    ends = ends_of_minima(low.sigma, passes.lower, passes.upper, passes.sigma, order)
-    return _counted(free_space, cells, low, ends)
+        low, finger, slot, which, passes = _least_points(free_space, cells, threads)
+        basins = basins_of(low, which, *passes)
+        del which
+        forest = least_forest(basins.of, len(basins.lowest), *passes)
+        passes = Passes(*(column[forest] for column in passes))
+        order = np.argsort(passes.sigma, kind="stable")
+        ends = ends_of_basins(low, basins, *passes, order)
+        return _counted(free_space, cells, low, finger, slot, basins, ends, threads)
+
+
+def _least_points(free_space, cells, threads):
+    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
+    cap = _AT_CAP * free_space.cap
+    m = pieces.total
+    told = np.zeros((len(cells), 2), dtype=np.int8)
+    fingers = range(cells.shape[1])
+    lists = list(threads.map(lambda i: cells_by_piece(cells, m, i), fingers))
+    parts = threads.map(
+        lambda at: passes_from(pieces, z, lists[at[0]], told, *at, cap, worst),
+        ((i, piece) for i in fingers for piece in range(m)),
+    )
+    passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    low, which = least_passes(len(cells), *passes)
+    low[(cells == cells[:, :1]).all(axis=1)] = 0.0
+    finger = np.full(len(cells), -1, dtype=np.int8)
+    slot = np.full(len(cells), -1, dtype=np.int32)
+    walls = edges_that_lead_nowhere(pieces)
+    isolated = np.flatnonzero((low == np.inf) & (told[:, 1] == 0))
+    for i in fingers:
+        for _ in threads.map(
+            lambda piece: lower_at_walls(
+                pieces, z, lists[i], told, walls, low, finger, slot, i, piece, worst
+            ),
+            range(m),
+        ):
+            pass
+    least_of_isolated(pieces, z, cells, isolated, low, finger, slot, cap, worst)
+    return low, finger, slot, which, passes
 
 
 def _shared(
@@ -138,22 +159,28 @@ def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> An
     return np.concatenate(parts)
 
 
-def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> Minima:
+def _counted(free_space, cells, low, finger, slot, basins, ends, threads):
     """Minima deeper than the depth cut, and no pinched hands."""
-    births, merges = low.sigma, ends.merged
+    lowest = basins.lowest
+    births, merges = low[lowest], ends.merged
     cut = DEPTH_CUT * free_space.pieces.diameter
     kept = np.flatnonzero((births > 0.0) & (births < free_space.cap - cut))
     kept = kept[merges[kept] - births[kept] > cut]
     kept = kept[np.lexsort((merges[kept], births[kept]))]
-    rows = np.full(len(cells) + 1, -1)  # the last one is for minima that never merge
+    rows = np.full(len(lowest) + 1, -1)  # the last one is for minima that never merge
     # what swallows a minimum that counts is deeper and ends later, so it counts or is pinched
     rows[kept] = np.arange(len(kept))
-    hands = least_hands(
-        free_space.pieces, free_space.z, cells[kept], low.finger[kept], low.slot[kept],
-        free_space.cap, free_space.worst,
-    )  # fmt: skip
+    at = lowest[kept]
+    held = cells[at]
+    parts = list(_shared(
+        threads, len(at), _STRETCH,
+        lambda a, b: least_hands(
+            free_space.pieces, free_space.z, held[a:b], finger[at[a:b]], slot[at[a:b]],
+            free_space.cap, free_space.worst)))
+    hands = np.concatenate(parts) if parts else np.empty((0, 4))
     d, w = hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
     fingers = d[:, None] + w[:, None] * free_space.hand.z
     contacts = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
-    held = np.array(cells[kept], dtype=np.int64)
-    return Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts, held)
+    return Minima(
+        births[kept], merges[kept], rows[ends.elder[kept]], contacts, held.astype(np.int64)
+    )
