@@ -17,7 +17,7 @@ from icage.kernels.union_find import root_of
 
 
 class Basins(NamedTuple):
-    """The basin (n,) of every cell, and the number (b,) of the lowest cell of each, ascending."""
+    """The basin (n,) of every cell, -1 where none; the lowest cell (b,) of each, ascending."""
 
     of: np.ndarray
     lowest: np.ndarray
@@ -47,23 +47,21 @@ def basins_of(low, which, lower, upper, sigma):
             # of two cells with one least point between them the first one keeps it
             if which[other] != e or sigma[e] != low[other] or other < k:
                 parent[k] = other
-    lowest = np.arange(n).astype(np.int32)
+    lowest = np.empty(n, np.int32)
+    for k in range(n):
+        lowest[k] = k
     for k in range(n):
         root = root_of(parent, k)
         if low[k] == low[root] and k < lowest[root]:
             lowest[root] = k
+    deepest = np.empty(n, np.int32)
     count = 0
     for k in range(n):
-        root = root_of(parent, k)
-        if lowest[root] == k:
-            count += 1
-    deepest = np.empty(count, np.int32)
-    count = 0
-    for k in range(n):
-        root = root_of(parent, k)
-        if lowest[root] == k:
+        if low[k] < np.inf and lowest[root_of(parent, k)] == k:
             deepest[count] = k
             count += 1
+    deepest = deepest[:count].copy()
+    lowest[:] = -1
     for b in range(count):
         lowest[root_of(parent, deepest[b])] = b
     of = np.empty(n, np.int32)
@@ -86,10 +84,12 @@ def least_forest(of, count, lower, upper, sigma):
             left[n] = e
             n += 1
     least = np.empty(count, np.int32)
+    sigma_of = np.empty(count)
     chosen = np.empty(count, np.int32)
     total = 0
     while n > 0:
         least[:] = -1
+        sigma_of[:] = np.inf
         kept = 0
         for r in range(n):
             e = left[r]
@@ -98,10 +98,10 @@ def least_forest(of, count, lower, upper, sigma):
                 continue
             left[kept] = e
             kept += 1
-            if least[a] < 0 or sigma[e] < sigma[least[a]]:
-                least[a] = e
-            if least[b] < 0 or sigma[e] < sigma[least[b]]:
-                least[b] = e
+            if sigma[e] < sigma_of[a]:
+                least[a], sigma_of[a] = e, sigma[e]
+            if sigma[e] < sigma_of[b]:
+                least[b], sigma_of[b] = e, sigma[e]
         n = kept
         for k in range(count):
             e = least[k]

@@ -21,12 +21,12 @@ from icage.cells.kernels.along import (
     CHECK_X,
     CHECK_Y,
     ERROR,
-    PUSH,
+    HERE_PUSH,
     ROUNDING,
+    THERE_PUSH,
     WEIGHT,
 )
-from icage.cells.kernels.facet import EPS
-from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE, NormStatus
+from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, NARROW, UNSURE, NormStatus
 from icage.kernels.compiled import compiled_borrowing
 
 _PARALLEL, _THIN, _CONFLICT, _MOST_STEPS, _NO_ROW = 1e-13, 1e-3, 1e-12, 60, 1e-11
@@ -34,15 +34,41 @@ _PARALLEL, _THIN, _CONFLICT, _MOST_STEPS, _NO_ROW = 1e-13, 1e-3, 1e-12, 60, 1e-1
 _BEYOND = 1e-9
 _STEEP = 1e-6
 
+HERE, THERE = 1, 2
 
-class Least(NamedTuple):
+
+class LeastAlong(NamedTuple):
+    """The least point on a facet, and what it tells of the cells next to it.
+
+    Attributes
+    ----------
+    status:
+        ``NARROW``: it is where it is said to be only if all rows near it hold, which doubles cannot
+        tell.
+    told:
+        Bits ``HERE`` and ``THERE``: in all of the cell no sigma is less; if there is no point, the
+        cell holds no hand up to the cap.
+    rows:
+        How many rows decide: of the bounds ``a`` and ``b``, and ``a_2`` and ``b_2``.
+    near:
+        How many rows may be tight there.
+    """
+
     status: NormStatus
     w_x: float
     w_y: float
     told: int
+    rows: int
+    a: int
+    b: int
+    a_2: int
+    b_2: int
+    near: int
 
 
 class _Row(NamedTuple):
+    """A half plane g . w >= c of two bounds, |g| = 1."""
+
     g_x: float
     g_y: float
     c: float
@@ -56,71 +82,37 @@ class _Row(NamedTuple):
 
 
 @compiled_borrowing
-def _pair(second, third, a, b, side):
-    """The half plane of a lower and an upper bound; norm 0 where there is no row."""
-    slots = len(second.check)
-    gx, gy, c, error, rounding, here, there, weight = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if a < 0:
-        here += side.here_start
-        there += side.there_start
-        weight += 1.0 + abs(here) + abs(there)
-    elif a < slots:
-        gx += second.check[a, CHECK_X]
-        gy += second.check[a, CHECK_Y]
-        c += second.rest[a, BOUND]
-        error += second.rest[a, ERROR]
-        rounding += second.rest[a, ROUNDING]
-        here += second.rest[a, PUSH]
-        there += second.rest[a, PUSH]
-        weight += second.rest[a, WEIGHT]
-    else:
-        gx += third.check[a - slots, CHECK_X]
-        gy += third.check[a - slots, CHECK_Y]
-        c += third.rest[a - slots, BOUND]
-        error += third.rest[a - slots, ERROR]
-        rounding += third.rest[a - slots, ROUNDING]
-        here += third.rest[a - slots, PUSH]
-        there += third.rest[a - slots, PUSH]
-        weight += third.rest[a - slots, WEIGHT]
-    if b < 0:
-        c -= side.length
-        error += 2.0 * EPS * side.length
-        rounding += 2.0 * EPS * side.length
-        here += side.here_end
-        there += side.there_end
-        weight += 1.0 + abs(side.here_end) + abs(side.there_end)
-    elif b < slots:
-        gx += second.check[b, CHECK_X]
-        gy += second.check[b, CHECK_Y]
-        c += second.rest[b, BOUND]
-        error += second.rest[b, ERROR]
-        rounding += second.rest[b, ROUNDING]
-        here += second.rest[b, PUSH]
-        there += second.rest[b, PUSH]
-        weight += second.rest[b, WEIGHT]
-    else:
-        gx += third.check[b - slots, CHECK_X]
-        gy += third.check[b - slots, CHECK_Y]
-        c += third.rest[b - slots, BOUND]
-        error += third.rest[b - slots, ERROR]
-        rounding += third.rest[b - slots, ROUNDING]
-        here += third.rest[b - slots, PUSH]
-        there += third.rest[b - slots, PUSH]
-        weight += third.rest[b - slots, WEIGHT]
+def _row(check, rest, a, b):
+    """The half plane of two bounds; and |g| before it was made 1, unless it is too small."""
+    gx = check[a, CHECK_X] + check[b, CHECK_X]
+    gy = check[a, CHECK_Y] + check[b, CHECK_Y]
     norm = math.sqrt(gx * gx + gy * gy)
-    if norm < _NO_ROW * weight:
-        return norm, _Row(gx, gy, c, error, rounding, here, there, weight, a, b)
-    inv = 1.0 / norm
+    weight = rest[a, WEIGHT] + rest[b, WEIGHT]
+    inv = 1.0 / norm if norm >= _NO_ROW * weight else 1.0
     return norm, _Row(
-        gx * inv, gy * inv, c * inv, error * inv, rounding * inv, here * inv,
-        there * inv, weight * inv, a, b
+        gx * inv,
+        gy * inv,
+        (rest[a, BOUND] + rest[b, BOUND]) * inv,
+        (rest[a, ERROR] + rest[b, ERROR]) * inv,
+        (rest[a, ROUNDING] + rest[b, ROUNDING]) * inv,
+        (rest[a, HERE_PUSH] + rest[b, HERE_PUSH]) * inv,
+        (rest[a, THERE_PUSH] + rest[b, THERE_PUSH]) * inv,
+        weight * inv,
+        a,
+        b,
     )
 
 
 @compiled_borrowing
-def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
-    slots = len(second.check)
-    jc, kc = second.check, third.check
+def _nothing(status, told):
+    return LeastAlong(status, 0.0, 0.0, told, 0, 0, 0, 0, 0, 0)
+
+
+@compiled_borrowing
+def least_along(check, rest, near, j0, j1, j2, k0, k1, k2, cap, worst):
+    """Least sigma over rows: lower bounds j0:j1 and k0:k1, upper ones j1:j2 and k1:k2, and ends."""
+    start, end = len(check) - 2, len(check) - 1
+    length = -check[end, CHECK_C]
     wx = 0.0
     wy = 0.0
     first = _Row(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2, -2)
@@ -128,48 +120,37 @@ def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
     rows = 0
     most2 = (cap * (1.0 + _BEYOND)) ** 2
     for _ in range(_MOST_STEPS):
-        low, high = 0.0, -side.length
-        a, b = -1, -1
-        for t in range(j0, j1):
-            v = jc[t, CHECK_C] - (jc[t, CHECK_X] * wx + jc[t, CHECK_Y] * wy)
-            if v > low:
-                low = v
-                a = t
-        for t in range(j1, j2):
-            v = jc[t, CHECK_C] - (jc[t, CHECK_X] * wx + jc[t, CHECK_Y] * wy)
-            if v > high:
-                high = v
-                b = t
-        for t in range(k0, k1):
-            v = kc[t, CHECK_C] - (kc[t, CHECK_X] * wx + kc[t, CHECK_Y] * wy)
-            if v > low:
-                low = v
-                a = t + slots
-        for t in range(k1, k2):
-            v = kc[t, CHECK_C] - (kc[t, CHECK_X] * wx + kc[t, CHECK_Y] * wy)
-            if v > high:
-                high = v
-                b = t + slots
+        low, high = 0.0, -length
+        a, b = start, end
+        for turn in range(2):
+            for t in range(k0 if turn else j0, k1 if turn else j1):
+                v = check[t, CHECK_C] - (check[t, CHECK_X] * wx + check[t, CHECK_Y] * wy)
+                if v > low:
+                    low, a = v, t
+            for t in range(k1 if turn else j1, k2 if turn else j2):
+                v = check[t, CHECK_C] - (check[t, CHECK_X] * wx + check[t, CHECK_Y] * wy)
+                if v > high:
+                    high, b = v, t
         if low + high <= 0.0:
+            if rows == 0:
+                return _nothing(FOUND, 0)
             return _certified(
-                second, third, j0, j1, j2, k0, k1, k2, side, worst, wx, wy, rows, first, other,
-                low, high,
-            )  # fmt: skip
+                check, rest, near, j0, j1, j2, k0, k1, k2, worst, wx, wy, rows, first, other
+            )
         if rows > 0 and ((a == first.a and b == first.b) or (a == other.a and b == other.b)):
-            return Least(UNSURE, 0.0, 0.0, 0)
-        norm, r = _pair(second, third, a, b, side)
+            return _nothing(UNSURE, 0)
+        norm, r = _row(check, rest, a, b)
         if norm < _NO_ROW * r.weight:
             if r.c - r.error - norm * cap > 0.0:
-                return Least(INFEASIBLE, 0.0, 0.0, 0)
-            return Least(UNSURE, 0.0, 0.0, 0)
+                return _nothing(INFEASIBLE, 0)
+            return _nothing(UNSURE, 0)
         if r.c - r.error > cap:
-            return Least(INFEASIBLE, 0.0, 0.0, _told(r.here, r.there, r.weight))
+            return _nothing(INFEASIBLE, _told(r.here, r.there, r.weight))
         bx = r.c * r.g_x
         by = r.c * r.g_y
         lo = -np.inf
         hi = np.inf
         at_lo, at_hi = 0, 0
-        sine = 1.0
         if rows > 0:
             x = first.g_y * r.g_x - first.g_x * r.g_y
             y = first.c - (first.g_x * bx + first.g_y * by)
@@ -179,8 +160,8 @@ def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
                 hi, at_hi = y / x, 1
             elif y > 0.0:
                 if y > 4.0 * (first.error + r.error) + _CONFLICT * abs(r.c):
-                    return Least(INFEASIBLE, 0.0, 0.0, 0)
-                return Least(UNSURE, 0.0, 0.0, 0)
+                    return _nothing(INFEASIBLE, 0)
+                return _nothing(UNSURE, 0)
         if rows > 1:
             x = other.g_y * r.g_x - other.g_x * r.g_y
             y = other.c - (other.g_x * bx + other.g_y * by)
@@ -192,8 +173,8 @@ def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
                     hi, at_hi = y / x, 2
             elif y > 0.0:
                 if y > 4.0 * (other.error + r.error) + _CONFLICT * abs(r.c):
-                    return Least(INFEASIBLE, 0.0, 0.0, 0)
-                return Least(UNSURE, 0.0, 0.0, 0)
+                    return _nothing(INFEASIBLE, 0)
+                return _nothing(UNSURE, 0)
         if lo > hi:
             p = first if at_lo == 1 else other
             q = first if at_hi == 1 else other
@@ -205,15 +186,15 @@ def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
                     q.g_x * r.g_x + q.g_y * r.g_y
                 )
                 m_r = max(m_r, 0.0)
-                return Least(
-                    INFEASIBLE, 0.0, 0.0,
+                return _nothing(
+                    INFEASIBLE,
                     _told(
                         x_hi * p.here + x_lo * q.here + m_r * r.here,
                         x_hi * p.there + x_lo * q.there + m_r * r.there,
                         x_hi * p.weight + x_lo * q.weight + m_r * r.weight,
                     ),
-                )
-            return Least(UNSURE, 0.0, 0.0, 0)
+                )  # fmt: skip
+            return _nothing(UNSURE, 0)
         s = 0.0
         rows = 1
         if lo > 0.0:
@@ -241,15 +222,16 @@ def least_along(second, third, j0, j1, j2, k0, k1, k2, side, cap, worst):
                 there = m_r * r.there + m_o * other.there
                 weight = m_r * r.weight + m_o * other.weight
             if doubt < 0.01 * _BEYOND * cap:
-                return Least(INFEASIBLE, 0.0, 0.0, _told(here, there, weight))
-    return Least(UNSURE, 0.0, 0.0, 0)
+                return _nothing(INFEASIBLE, _told(here, there, weight))
+    return _nothing(UNSURE, 0)
 
 
 @compiled_borrowing
-def _certified(second, third, j0, j1, j2, k0, k1, k2, side, worst, wx, wy, rows, first, other, low, high):
+def _certified(check, rest, near, j0, j1, j2, k0, k1, k2, worst, wx, wy, rows, first, other):
+    """Is |w| within ``worst`` of the truth? As in ``min_norm``."""
     norm = math.sqrt(wx * wx + wy * wy)
     if norm == 0.0:
-        return Least(FOUND, 0.0, 0.0, 0)
+        return _nothing(FOUND, 0)
     ux = wx / norm
     uy = wy / norm
     shift = first.rounding
@@ -259,7 +241,7 @@ def _certified(second, third, j0, j1, j2, k0, k1, k2, side, worst, wx, wy, rows,
     if rows == 2:
         det = first.g_x * other.g_y - first.g_y * other.g_x
         if abs(det) < _PARALLEL:
-            return Least(UNSURE, 0.0, 0.0, 0)
+            return _nothing(UNSURE, 0)
         mult_1 = (ux * other.g_y - uy * other.g_x) / det
         mult_2 = (first.g_x * uy - first.g_y * ux) / det
         below = abs(mult_1) * first.rounding + abs(mult_2) * other.rounding
@@ -268,73 +250,68 @@ def _certified(second, third, j0, j1, j2, k0, k1, k2, side, worst, wx, wy, rows,
         there = mult_1 * first.there + mult_2 * other.there
         weight = abs(mult_1) * first.weight + abs(mult_2) * other.weight
     if below > worst or shift > 10.0 * worst:
-        return Least(UNSURE, 0.0, 0.0, 0)
-    # bounds that may be tight
-    slots = len(second.check)
-    y_high = 4.0 * EPS * side.length - side.length
+        return _nothing(UNSURE, 0)
+    # the bounds that may be tight there, and of these the pairs
+    end = len(check) - 1
+    most = _nearly(check, rest, end, wx, wy, shift)
     for t in range(j1, j2):
-        y_high = max(y_high, _nearly(second, t, wx, wy, shift))
+        most = max(most, _nearly(check, rest, t, wx, wy, shift))
     for t in range(k1, k2):
-        y_high = max(y_high, _nearly(third, t, wx, wy, shift))
+        most = max(most, _nearly(check, rest, t, wx, wy, shift))
     widest = 0.0
     narrowest = 0.0
     largest = 0.0
-    for a in range(-1, j1 - j0 + k1 - k0):
-        if a < 0:
-            at_a = -1
-            y_a = 0.0
-        elif a < j1 - j0:
-            at_a = j0 + a
-            y_a = _nearly(second, at_a, wx, wy, shift)
-        else:
-            at_a = k0 + a - (j1 - j0)
-            y_a = _nearly(third, at_a, wx, wy, shift)
-            at_a += slots
-        if y_a + y_high <= 0.0:
+    count = 0
+    for row in range(j1 - j0 + k1 - k0 + 1):
+        a = j0 + row
+        if a >= j1:
+            a += k0 - j1
+            if a >= k1:
+                a = end - 1
+        lower = _nearly(check, rest, a, wx, wy, shift)
+        if lower + most <= 0.0:
             continue
-        for b in range(-1, j2 - j1 + k2 - k1):
-            if b < 0:
-                at_b = -1
-                y_b = 4.0 * EPS * side.length - side.length
-            elif b < j2 - j1:
-                at_b = j1 + b
-                y_b = _nearly(second, at_b, wx, wy, shift)
-            else:
-                at_b = k1 + b - (j2 - j1)
-                y_b = _nearly(third, at_b, wx, wy, shift)
-                at_b += slots
-            if y_a + y_b <= 0.0:
+        for column in range(j2 - j1 + k2 - k1 + 1):
+            b = j1 + column
+            if b >= j2:
+                b += k1 - j2
+                if b >= k2:
+                    b = end
+            if lower + _nearly(check, rest, b, wx, wy, shift) <= 0.0:
                 continue
-            size, r = _pair(second, third, at_a, at_b, side)
+            size, r = _row(check, rest, a, b)
             if size < _NO_ROW * r.weight:
-                return Least(UNSURE, 0.0, 0.0, 0)
+                return _nothing(UNSURE, 0)
             gap = r.g_x * wx + r.g_y * wy - r.c
             if gap < 4.0 * (r.rounding + shift):
-                if gap < -4.0 * (r.rounding + shift):
-                    return Least(UNSURE, 0.0, 0.0, 0)
+                if gap < -4.0 * (r.rounding + shift) or count == len(near):
+                    return _nothing(UNSURE, 0)
                 turn = math.atan2(ux * r.g_y - uy * r.g_x, ux * r.g_x + uy * r.g_y)
                 widest = max(widest, turn)
                 narrowest = min(narrowest, turn)
                 largest = max(largest, r.rounding)
+                near[count, 0], near[count, 1] = a, b
+                count += 1
     room = math.pi - (widest - narrowest)
+    status, told = FOUND, _told(here, there, weight)
     if room < _THIN or largest / math.sin(min(0.5 * room, 1.5)) > worst:
-        return Least(UNSURE, 0.0, 0.0, 0)
-    return Least(FOUND, wx, wy, _told(here, there, weight))
+        status, told = NARROW, 0
+    return LeastAlong(status, wx, wy, told, rows, first.a, first.b, other.a, other.b, count)
 
 
 @compiled_borrowing
 def _told(here, there, weight):
     told = 0
     if here < -_STEEP * weight:
-        told = 1
+        told = HERE
     if there > _STEEP * weight:
-        told += 2
+        told += THERE
     return told
 
 
 @compiled_borrowing
-def _nearly(bounds, t, wx, wy, shift):
-    """How far a bound is violated at w, and five times its rounding and what w may be off by."""
-    gx, gy = bounds.check[t, CHECK_X], bounds.check[t, CHECK_Y]
-    v = bounds.check[t, CHECK_C] - (gx * wx + gy * wy)
-    return v + 6.0 * bounds.rest[t, ERROR] + 5.0 * shift * (abs(gx) + abs(gy))
+def _nearly(check, rest, t, wx, wy, shift):
+    """How far a bound is violated at w, and five times its error and what w may be off by."""
+    gx, gy = check[t, CHECK_X], check[t, CHECK_Y]
+    v = check[t, CHECK_C] - (gx * wx + gy * wy)
+    return v + 6.0 * rest[t, ERROR] + 5.0 * shift * (abs(gx) + abs(gy))

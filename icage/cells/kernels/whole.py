@@ -13,13 +13,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.along import new_bounds, put_bounds, side_of
-from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, facet_of, finger_on_segment
-from icage.cells.kernels.least_along import least_along
-from icage.cells.kernels.min_norm import FOUND, UNSURE
+from icage.cells.kernels.along import new_bounds, put_bounds, segment_between
+from icage.cells.kernels.confirmed import confirmed
+from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, Facet, facet_of, finger_on_segment
+from icage.cells.kernels.least_along import HERE, THERE, least_along
+from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE
 from icage.cells.kernels.passes import new_room, pass_value, value_carefully
 from icage.cells.kernels.search import birth
-from icage.kernels.compiled import compiled
+from icage.kernels.compiled import compiled, compiled_borrowing
+
+LEAST, EMPTY = range(2)
+"""Columns of ``told`` (n, 2), 1 where it is known of a cell: its least point is on a pass; it holds
+no hand up to the cap. Each is only ever put to 1, so that threads may do so at once."""
 
 _SAME = 1e-9
 """[diameter] Least points that two fingers tell of are one if they differ by less: far above the
@@ -67,13 +72,41 @@ def cells_by_piece(cells, m, i):
     return Lists(begin, key, number)
 
 
+@compiled_borrowing
+def _least(pieces, bounds, at_j, at_k, cap, worst):
+    ptr, upper, slots = pieces.ptr, bounds.upper, len(pieces.slot_vertex)
+    return least_along(
+        bounds.check, bounds.rest, bounds.near, ptr[at_j], upper[0, at_j], ptr[at_j + 1],
+        slots + ptr[at_k], upper[1, at_k], slots + ptr[at_k + 1], cap, worst,
+    )  # fmt: skip
+
+
+@compiled_borrowing
+def _value(pieces, z, i, segment, at_j, at_k, bounds, found, cap):
+    """Least sigma, inf for none up to ``cap``."""
+    if found.status == INFEASIBLE:
+        return np.inf
+    wx, wy = found.w_x, found.w_y
+    if found.status != FOUND:
+        fingers = len(z)
+        j, k = (i + 1) % fingers, (i + 2) % fingers
+        facet = Facet(i, segment.start, segment.end, j, at_j, k, at_k)
+        if found.status == UNSURE:
+            return value_carefully(pieces, z, facet, cap).sigma
+        status, wx, wy = confirmed(pieces, z, facet, bounds.slot, bounds.near, found)
+        if status == UNSURE:
+            return value_carefully(pieces, z, facet, cap).sigma
+    sigma = math.sqrt(wx * wx + wy * wy)
+    return sigma if sigma <= cap else np.inf
+
+
 @compiled
 def passes_from(pieces, z, lists, told, i, piece, cap, worst):
     """Passes up to ``cap`` that finger i makes from a piece into later ones."""
     m = len(pieces.ptr) - 1
     fingers = len(z)
     j, k = (i + 1) % fingers, (i + 2) % fingers
-    second, third = new_bounds(pieces), new_bounds(pieces)
+    bounds = new_bounds(pieces)
     begin, key, number = lists.begin, lists.key, lists.number
     most = 0
     for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
@@ -83,15 +116,13 @@ def passes_from(pieces, z, lists, told, i, piece, cap, worst):
     lower = np.empty(most, np.int32)
     upper = np.empty(most, np.int32)
     sigma = np.empty(most)
-    cell = np.empty(fingers, np.int64)
     count = 0
     for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
         other = pieces.slot_neighbour[s]
         if other <= piece:
             continue
-        side = side_of(pieces, piece, s)
-        put_bounds(pieces, z, piece, s, i, j, second)
-        put_bounds(pieces, z, piece, s, i, k, third)
+        segment = segment_between(pieces, piece, s)
+        put_bounds(pieces, z, segment, i, bounds)
         x, y = begin[piece], begin[other]
         while x < begin[piece + 1] and y < begin[other + 1]:
             if key[x] < key[y]:
@@ -106,29 +137,17 @@ def passes_from(pieces, z, lists, told, i, piece, cap, worst):
                 at_j, at_k = at_k, at_j
             x += 1
             y += 1
-            if second.touches[at_j] & third.touches[at_k]:
+            if bounds.touches[at_j] & bounds.touches[at_k]:
                 value = 0.0  # all fingers in one corner
             else:
-                found = least_along(
-                    second, third, pieces.ptr[at_j], second.upper[at_j], pieces.ptr[at_j + 1],
-                    pieces.ptr[at_k], third.upper[at_k], pieces.ptr[at_k + 1], side, cap, worst,
-                )  # fmt: skip
-                if found.status == UNSURE:
-                    cell[i], cell[j], cell[k] = piece, at_j, at_k
-                    value = value_carefully(pieces, z, facet_of(pieces, cell, i, s), cap).sigma
-                elif found.status == FOUND:
-                    value = math.sqrt(found.w_x * found.w_x + found.w_y * found.w_y)
-                    if found.told & 1:
-                        told[here, 0] = 1
-                    if found.told & 2:
-                        told[there, 0] = 1
-                else:
-                    value = np.inf
-                    if found.told & 1:
-                        told[here, 1] = 1
-                    if found.told & 2:
-                        told[there, 1] = 1
-            if value <= cap:
+                found = _least(pieces, bounds, at_j, at_k, cap, worst)
+                value = _value(pieces, z, i, segment, at_j, at_k, bounds, found, cap)
+                of = LEAST if value < np.inf else EMPTY
+                if found.told & HERE:
+                    told[here, of] = 1
+                if found.told & THERE:
+                    told[there, of] = 1
+            if value < np.inf:
                 lower[count], upper[count], sigma[count] = min(here, there), max(here, there), value
                 count += 1
     return Passes(lower[:count].copy(), upper[:count].copy(), sigma[:count].copy())
@@ -163,17 +182,16 @@ def lower_at_walls(pieces, z, lists, told, walls, low, finger, slot, i, piece, w
     m = len(pieces.ptr) - 1
     fingers = len(z)
     j, k = (i + 1) % fingers, (i + 2) % fingers
-    second, third = new_bounds(pieces), new_bounds(pieces)
+    bounds = new_bounds(pieces)
     cell = np.empty(fingers, np.int64)
     for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
         if pieces.slot_neighbour[s] >= 0:
             continue
-        side = side_of(pieces, piece, s)
-        put_bounds(pieces, z, piece, s, i, j, second)
-        put_bounds(pieces, z, piece, s, i, k, third)
+        segment = segment_between(pieces, piece, s)
+        put_bounds(pieces, z, segment, i, bounds)
         for x in range(lists.begin[piece], lists.begin[piece + 1]):
             n = lists.number[x]
-            if told[n, 0] or not 0.0 < low[n] < np.inf:
+            if told[n, LEAST] or not 0.0 < low[n] < np.inf:
                 continue
             at_j, at_k = lists.key[x] // m, lists.key[x] % m
             if j > k:
@@ -181,17 +199,10 @@ def lower_at_walls(pieces, z, lists, told, walls, low, finger, slot, i, piece, w
             cell[i], cell[j], cell[k] = piece, at_j, at_k
             if np.argmax(walls[cell]) == i:
                 continue
-            found = least_along(
-                second, third, pieces.ptr[at_j], second.upper[at_j], pieces.ptr[at_j + 1],
-                pieces.ptr[at_k], third.upper[at_k], pieces.ptr[at_k + 1], side, low[n], worst,
-            )  # fmt: skip
-            value = np.inf
-            if found.status == UNSURE:
-                value = value_carefully(pieces, z, facet_of(pieces, cell, i, s), low[n]).sigma
-            elif found.status == FOUND:
-                value = math.sqrt(found.w_x * found.w_x + found.w_y * found.w_y)
-                if value <= low[n] and found.told & 1:
-                    told[n, 0] = 1
+            found = _least(pieces, bounds, at_j, at_k, low[n], worst)
+            value = _value(pieces, z, i, segment, at_j, at_k, bounds, found, low[n])
+            if value < np.inf and found.told & HERE:
+                told[n, LEAST] = 1
             if value < low[n]:
                 low[n], finger[n], slot[n] = value, i, s
 
