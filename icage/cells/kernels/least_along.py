@@ -29,12 +29,21 @@ from icage.cells.kernels.along import (
 from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, NARROW, UNSURE, NormStatus
 from icage.kernels.compiled import compiled_borrowing
 
-_PARALLEL, _THIN, _CONFLICT, _MOST_STEPS, _NO_ROW = 1e-13, 1e-3, 1e-12, 60, 1e-11
+_PARALLEL, _THIN, _CONFLICT, _MOST_STEPS = 1e-13, 1e-3, 1e-12, 60
+"""As in ``min_norm``."""
+
+_NO_ROW = 1e-11
+"""[1] As in ``passes``: a row whose g is this small against its weights says nothing about w."""
 
 _BEYOND = 1e-9
+"""[1] The cap is passed if it is by this share of it, and rounding is below a hundredth of that."""
+
 _STEEP = 1e-6
+"""[1] A push on the segment counts from this share of the forces that make it up: far above what
+rounding does to multipliers. One that does not count only costs the cell a look at its walls."""
 
 HERE, THERE = 1, 2
+"""Bits for the cells on both sides of a facet: that of the segment's piece, and that behind it."""
 
 
 class LeastAlong(NamedTuple):
@@ -110,7 +119,10 @@ def _nothing(status, told):
 
 @compiled_borrowing
 def least_along(check, rest, near, j0, j1, j2, k0, k1, k2, cap, worst):
-    """Least sigma over rows: lower bounds j0:j1 and k0:k1, upper ones j1:j2 and k1:k2, and ends."""
+    """Least sigma with the bounds of two pieces: lower j0:j1 and k0:k1, upper j1:j2 and k1:k2.
+
+    ``check``, ``rest`` and ``near`` are those of ``Bounds``.
+    """
     start, end = len(check) - 2, len(check) - 1
     length = -check[end, CHECK_C]
     wx = 0.0
@@ -182,6 +194,7 @@ def least_along(check, rest, near, j0, j1, j2, k0, k1, k2, cap, worst):
             x_hi = abs(q.g_y * r.g_x - q.g_x * r.g_y)
             doubt = (p.error + r.error) / x_lo + (q.error + r.error) / x_hi
             if lo - hi > 4.0 * doubt:
+                # the multipliers under which nothing is left of w: they contradict each other
                 m_r = x_hi * -(p.g_x * r.g_x + p.g_y * r.g_y) - x_lo * (
                     q.g_x * r.g_x + q.g_y * r.g_y
                 )
@@ -301,6 +314,10 @@ def _certified(check, rest, near, j0, j1, j2, k0, k1, k2, worst, wx, wy, rows, f
 
 @compiled_borrowing
 def _told(here, there, weight):
+    """For which of both cells multipliers are a proof: where they push the finger back.
+
+    For all hands of the piece's cell |w| is then at least what it is with the finger on the edge.
+    """
     told = 0
     if here < -_STEEP * weight:
         told = HERE

@@ -1,8 +1,8 @@
 """All passes and all least points of one hand's free space: its whole sublevel structure.
 
-Only cells that hold a hand are looked at, each facet once. A stage takes a stretch of the cells,
-so that threads can share it; what comes out does not depend on how the stretches are cut. Our own.
-[docs/decisions/0014-whole-sublevels.md]
+Only cells that hold a hand are looked at, all facets on one edge of a piece together. A stage takes
+one piece of one finger, so that threads can share it; what comes out does not depend on who took
+which. Our own. [docs/decisions/0014-whole-sublevels.md]
 """
 
 # pyright: basic
@@ -74,6 +74,7 @@ def cells_by_piece(cells, m, i):
 
 @compiled_borrowing
 def _least(pieces, bounds, at_j, at_k, cap, worst):
+    """The least point with the second finger in piece ``at_j`` and the third in ``at_k``."""
     ptr, upper, slots = pieces.ptr, bounds.upper, len(pieces.slot_vertex)
     return least_along(
         bounds.check, bounds.rest, bounds.near, ptr[at_j], upper[0, at_j], ptr[at_j + 1],
@@ -102,7 +103,10 @@ def _value(pieces, z, i, segment, at_j, at_k, bounds, found, cap):
 
 @compiled
 def passes_from(pieces, z, lists, told, i, piece, cap, worst):
-    """Passes up to ``cap`` that finger i makes from a piece into later ones."""
+    """Passes up to ``cap`` that finger i makes from a piece into later ones.
+
+    And what they tell of the cells on both sides.
+    """
     m = len(pieces.ptr) - 1
     fingers = len(z)
     j, k = (i + 1) % fingers, (i + 2) % fingers
@@ -178,7 +182,12 @@ def edges_that_lead_nowhere(pieces):
 
 @compiled
 def lower_at_walls(pieces, z, lists, told, walls, low, finger, slot, i, piece, worst):
-    """Lower ``low`` to where finger i is on an edge of its piece that leads nowhere."""
+    """Lower ``low`` to where finger i is on an edge of its piece that leads nowhere.
+
+    At a positive minimum two fingers are held by an edge of their piece: of any two of the three
+    one is. What is no pass has it on an edge that leads nowhere, so the finger with the most of
+    those is not asked. Cells without a pass are left out, see ``least_of_isolated``.
+    """
     m = len(pieces.ptr) - 1
     fingers = len(z)
     j, k = (i + 1) % fingers, (i + 2) % fingers

@@ -223,7 +223,7 @@ def test_few_rows_in_double_double_are_as_good_as_all() -> None:
             narrow += 1
             if narrow == 8:
                 break
-    assert seen > 8
+    assert seen > 1
 
 
 @pytest.mark.parametrize("seed", range(20))
