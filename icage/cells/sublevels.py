@@ -8,23 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from icage.arrays import AnyArray, FloatArray, IntArray
 from icage.cells.free_space import FreeSpace
+from icage.cells.kernels.basins import (
+    Basins,
+    Ends,
+    basins_of,
+    ends_of_basins,
+    least_forest,
+)
 from icage.cells.kernels.inhabited import extents_of, inhabited_cells
 from icage.cells.kernels.whole import (
-    Ends,
-    LeastPoints,
+    EMPTY,
     Passes,
-    ends_of_minima,
+    cells_by_piece,
+    edges_that_lead_nowhere,
     least_hands,
+    least_of_isolated,
     least_passes,
-    least_points,
-    passes_between,
-    rows_of,
+    lower_at_walls,
+    passes_from,
 )
 from icage.errors import InputError
 from icage.geometry.near_frame import NearFrame
@@ -41,7 +49,7 @@ _AT_CAP = 1.0 + 1e-9
 must not make a hand that escapes just there one that never does."""
 
 _STRETCH = 10_000
-"""Cells that a thread takes at a time: some 50 ms."""
+"""Hands that a thread takes at a time: some 10 ms."""
 
 Done = TypeVar("Done")
 
@@ -90,25 +98,96 @@ def minima_in(free_space: FreeSpace, workers: int = 1) -> Minima:
     InputError:
         More than ``MOST_CELLS`` cells hold a hand.
     """
-    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
-    cap = _AT_CAP * free_space.cap
     with ThreadPoolExecutor(max_workers=workers) as threads:
         cells = _cells_with_a_hand(free_space, threads)
-        row = rows_of(cells, pieces.total)
-        parts = _shared(
-            threads, len(cells), _STRETCH,
-            lambda a, b: passes_between(pieces, z, cells, row, a, b, cap, worst),
-        )  # fmt: skip
-        passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-        least = least_passes(len(cells), passes.lower, passes.upper, passes.sigma)
-        parts = _shared(
-            threads, len(cells), _STRETCH,
-            lambda a, b: least_points(pieces, z, cells, least, a, b, cap, worst),
-        )  # fmt: skip
-        low = LeastPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        low = _least_points(free_space, cells, threads)
+        basins = basins_of(low.sigma, low.least, *low.passes)
+        ends = threads.submit(_ends, low, basins)
+        held = _held(free_space, cells, low, basins, threads)
+    return _counted(free_space, held, ends.result())
+
+
+class _LeastPoints(NamedTuple):
+    """Least sigma (n,) of all cells, and where.
+
+    ``finger`` and ``slot`` (n,): the edge of its piece that the finger is on; -1 where the least
+    point is on a pass, or is a pinched hand. ``least`` (n,) is the least of the cell's ``passes``.
+    """
+
+    sigma: FloatArray
+    finger: AnyArray
+    slot: AnyArray
+    least: AnyArray
+    passes: Passes
+
+
+class _Held(NamedTuple):
+    """Basins whose least point is a hand below the cap: basin and sigma (b,), cell, hand (b, 4)."""
+
+    basin: IntArray
+    sigma: FloatArray
+    cell: AnyArray
+    hand: FloatArray
+
+
+def _least_points(
+    free_space: FreeSpace, cells: AnyArray, threads: ThreadPoolExecutor
+) -> _LeastPoints:
+    pieces, z, worst = free_space.pieces, free_space.z, free_space.worst
+    cap = _AT_CAP * free_space.cap
+    m, fingers = pieces.total, range(len(z))
+    told = np.zeros((len(cells), 2), dtype=np.int8)
+    lists = list(threads.map(partial(cells_by_piece, cells, m), fingers))
+
+    def passes_of(finger: int, piece: int) -> Passes:
+        return passes_from(pieces, z, lists[finger], told, finger, piece, cap, worst)
+
+    every = np.indices((len(z), m)).reshape(2, -1).tolist()
+    parts = threads.map(passes_of, *every)
+    passes = Passes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    sigma, least = least_passes(len(cells), *passes)
+    isolated = np.flatnonzero((sigma == np.inf) & (told[:, EMPTY] == 0))
+    sigma[(cells == cells[:, :1]).all(axis=1)] = 0.0
+    at = np.full(len(cells), -1, dtype=np.int8), np.full(len(cells), -1, dtype=np.int32)
+    walls = edges_that_lead_nowhere(pieces)
+
+    def lower(finger: int, piece: int) -> None:
+        lower_at_walls(pieces, z, lists[finger], told, walls, sigma, *at, finger, piece, worst)
+
+    for finger in fingers:  # one after the other: a cell has one piece for each
+        list(threads.map(partial(lower, finger), range(m)))
+    least_of_isolated(pieces, z, cells, isolated, sigma, *at, cap, worst)
+    return _LeastPoints(sigma, *at, least, passes)
+
+
+def _ends(low: _LeastPoints, basins: Basins) -> Ends:
+    forest = least_forest(basins.of, len(basins.lowest), *low.passes)
+    passes = Passes(*(column[forest] for column in low.passes))
     order = np.argsort(passes.sigma, kind="stable")
-    ends = ends_of_minima(low.sigma, passes.lower, passes.upper, passes.sigma, order)
-    return _counted(free_space, cells, low, ends)
+    return ends_of_basins(low.sigma, basins, *passes, order)
+
+
+def _held(
+    free_space: FreeSpace,
+    cells: AnyArray,
+    low: _LeastPoints,
+    basins: Basins,
+    threads: ThreadPoolExecutor,
+) -> _Held:
+    births = low.sigma[basins.lowest]
+    top = free_space.cap - DEPTH_CUT * free_space.pieces.diameter
+    basin = np.flatnonzero((births > 0.0) & (births < top))
+    at = basins.lowest[basin]
+    cell, finger, slot = cells[at], low.finger[at], low.slot[at]
+
+    def hands(first: int, last: int) -> FloatArray:
+        return least_hands(
+            free_space.pieces, free_space.z, cell[first:last], finger[first:last],
+            slot[first:last], free_space.cap, free_space.worst,
+        )  # fmt: skip
+
+    parts = _shared(threads, len(at), _STRETCH, hands)
+    return _Held(basin, births[basin], cell, np.concatenate([np.empty((0, 4)), *parts]))
 
 
 def _shared(
@@ -138,22 +217,17 @@ def _cells_with_a_hand(free_space: FreeSpace, threads: ThreadPoolExecutor) -> An
     return np.concatenate(parts)
 
 
-def _counted(free_space: FreeSpace, cells: AnyArray, low: LeastPoints, ends: Ends) -> Minima:
+def _counted(free_space: FreeSpace, held: _Held, ends: Ends) -> Minima:
     """Minima deeper than the depth cut, and no pinched hands."""
-    births, merges = low.sigma, ends.merged
-    cut = DEPTH_CUT * free_space.pieces.diameter
-    kept = np.flatnonzero((births > 0.0) & (births < free_space.cap - cut))
-    kept = kept[merges[kept] - births[kept] > cut]
+    births, merges = held.sigma, ends.merged[held.basin]
+    kept = np.flatnonzero(merges - births > DEPTH_CUT * free_space.pieces.diameter)
     kept = kept[np.lexsort((merges[kept], births[kept]))]
-    rows = np.full(len(cells) + 1, -1)  # the last one is for minima that never merge
+    rows = np.full(len(ends.merged) + 1, -1)  # the last one is for minima that never merge
     # what swallows a minimum that counts is deeper and ends later, so it counts or is pinched
-    rows[kept] = np.arange(len(kept))
-    hands = least_hands(
-        free_space.pieces, free_space.z, cells[kept], low.finger[kept], low.slot[kept],
-        free_space.cap, free_space.worst,
-    )  # fmt: skip
+    rows[held.basin[kept]] = np.arange(len(kept))
+    hands = held.hand[kept]
     d, w = hands[:, 0] + 1j * hands[:, 1], hands[:, 2] + 1j * hands[:, 3]
     fingers = d[:, None] + w[:, None] * free_space.hand.z
     contacts = np.stack([fingers.real, fingers.imag], axis=2) + free_space.origin
-    held = np.array(cells[kept], dtype=np.int64)
-    return Minima(births[kept], merges[kept], rows[ends.elder[kept]], contacts, held)
+    into = rows[ends.elder[held.basin[kept]]]
+    return Minima(births[kept], merges[kept], into, contacts, held.cell[kept].astype(np.int64))

@@ -72,7 +72,7 @@ def stamped(
         return _kept(numba.njit(**options)(function))
     # private names of numba's, checked by a test: without them the cache would go stale unseen
     cache = dispatcher._cache
-    cache._cache_file = type(cache._cache_file)(
+    cache._cache_file = _index_of(type(cache._cache_file))(
         cache_path=cache.cache_path,
         filename_base=f"{cache._impl.filename_base}.{suffix}",
         source_stamp=sources.digest,
@@ -112,6 +112,25 @@ class _Watch(Listener):
 
     def on_end(self, event: Event) -> None:
         pass
+
+
+@lru_cache(maxsize=1)
+def _index_of(usual: Any) -> Any:
+    """The index of a cache, which is empty where it cannot be read: so is a stale one.
+
+    It names the classes of arguments. Where one was renamed since, numba found no such class.
+    """
+
+    class Index(usual):
+        def _load_index(self) -> Any:
+            try:
+                return super()._load_index()
+            except OSError:
+                raise
+            except Exception:
+                return {}
+
+    return Index
 
 
 def _while_unchanged(

@@ -18,7 +18,7 @@ from icage.kernels import double_double as dd
 from icage.kernels.compiled import compiled, compiled_borrowing
 from icage.kernels.tips import SHARP, tip_at
 
-_CAREFUL_SLACK = 1e-24
+CAREFUL_SLACK = 1e-24
 """[diameter] In double-double a row may be violated by this: above rounding at 1e-32 of lengths
 that are divided by the sine of a sliver's angle."""
 
@@ -38,56 +38,125 @@ class _CarefulVector(NamedTuple):
     y_lo: float
 
 
+class CarefulBound(NamedTuple):
+    """A half plane g . w + h tau >= c in double-double, tau over [0, 1]."""
+
+    g: _CarefulVector
+    along_hi: float
+    along_lo: float
+    c_hi: float
+    c_lo: float
+
+
+class CarefulRow(NamedTuple):
+    """A half plane g . w >= c in double-double."""
+
+    g: _CarefulVector
+    c_hi: float
+    c_lo: float
+
+
+@compiled_borrowing
+def careful_side(pieces, start, end):
+    """The vector between two vertices."""
+    x_hi, x_lo = dd.two_sum(pieces.x[end], -pieces.x[start])
+    y_hi, y_lo = dd.two_sum(pieces.y[end], -pieces.y[start])
+    return _CarefulVector(x_hi, x_lo, y_hi, y_lo)
+
+
+@compiled_borrowing
+def careful_bound(pieces, z, finger, start, side, other, piece, s):
+    """What the slot ``s`` of the piece of another finger says; ``side`` is not of length 1."""
+    vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
+    a = slot_vertex[s]
+    b = slot_vertex[s + 1 if s + 1 < ptr[piece + 1] else ptr[piece]]
+    # inward normal of a counterclockwise piece: the edge turned left by a right angle
+    nxh, nxl = dd.two_sum(vy[a], -vy[b])
+    nyh, nyl = dd.two_sum(vx[b], -vx[a])
+    inv = 1.0 / math.sqrt(nxh * nxh + nyh * nyh)
+    nxh, nxl = dd.scale(nxh, nxl, inv)
+    nyh, nyl = dd.scale(nyh, nyl, inv)
+    n = _CarefulVector(nxh, nxl, nyh, nyl)
+    return _bound_through(pieces, z, finger, start, side, other, a, n)
+
+
+@compiled_borrowing
+def _bound_through(pieces, z, finger, start, side, other, a, n):
+    """The half plane through vertex ``a``, of normal n, for another finger."""
+    uxh, uxl = dd.two_sum(z[other, 0], -z[finger, 0])
+    uyh, uyl = dd.two_sum(z[other, 1], -z[finger, 1])
+    gxh, gxl = dd.dot(uxh, uxl, uyh, uyl, n.x_hi, n.x_lo, n.y_hi, n.y_lo)
+    gyh, gyl = dd.dot(uxh, uxl, -uyh, -uyl, n.y_hi, n.y_lo, n.x_hi, n.x_lo)
+    hh, hl = dd.dot(n.x_hi, n.x_lo, n.y_hi, n.y_lo, side.x_hi, side.x_lo, side.y_hi, side.y_lo)
+    dxh, dxl = dd.two_sum(pieces.x[a], -pieces.x[start])
+    dyh, dyl = dd.two_sum(pieces.y[a], -pieces.y[start])
+    ch, cl = dd.dot(n.x_hi, n.x_lo, n.y_hi, n.y_lo, dxh, dxl, dyh, dyl)
+    return CarefulBound(_CarefulVector(gxh, gxl, gyh, gyl), hh, hl, ch, cl)
+
+
+@compiled_borrowing
+def careful_end(pieces, far):
+    """What an end of the segment says, the far one or the near one."""
+    h, c = (-pieces.scale, -pieces.scale) if far else (pieces.scale, 0.0)
+    return CarefulBound(_CarefulVector(0.0, 0.0, 0.0, 0.0), h, 0.0, c, 0.0)
+
+
+@compiled_borrowing
+def careful_row(a, b):
+    """The half plane of a lower and an upper bound on tau."""
+    # over the larger weight, so that no row is scaled up from nothing
+    inv = 1.0 / max(a.along_hi, -b.along_hi)
+    mah, mal = dd.scale(a.along_hi, a.along_lo, inv)
+    mbh, mbl = dd.scale(-b.along_hi, -b.along_lo, inv)
+    th, tl = dd.mul(mah, mal, b.g.x_hi, b.g.x_lo)
+    sh, sl = dd.mul(mbh, mbl, a.g.x_hi, a.g.x_lo)
+    gxh, gxl = dd.add(th, tl, sh, sl)
+    th, tl = dd.mul(mah, mal, b.g.y_hi, b.g.y_lo)
+    sh, sl = dd.mul(mbh, mbl, a.g.y_hi, a.g.y_lo)
+    gyh, gyl = dd.add(th, tl, sh, sl)
+    th, tl = dd.mul(mah, mal, b.c_hi, b.c_lo)
+    sh, sl = dd.mul(mbh, mbl, a.c_hi, a.c_lo)
+    ch, cl = dd.add(th, tl, sh, sl)
+    return CarefulRow(_CarefulVector(gxh, gxl, gyh, gyl), ch, cl)
+
+
 @compiled_borrowing
 def _careful_rows(pieces, z, facet, side, finger, piece, across_tips, base, count):
     """Append the half planes of one finger's piece, those across its sharp tips if asked for.
 
     ``side`` is the segment, not of length 1.
     """
-    vx, vy, ptr, slot_vertex = pieces.x, pieces.y, pieces.ptr, pieces.slot_vertex
-    uxh, uxl = dd.two_sum(z[finger, 0], -z[facet.finger, 0])
-    uyh, uyl = dd.two_sum(z[finger, 1], -z[facet.finger, 1])
-    u = _CarefulVector(uxh, uxl, uyh, uyl)
-    for s in range(ptr[piece], ptr[piece + 1]):
-        a = slot_vertex[s]
-        b = slot_vertex[s + 1 if s + 1 < ptr[piece + 1] else ptr[piece]]
-        # inward normal of a counterclockwise piece: the edge turned left by a right angle
-        nxh, nxl = dd.two_sum(vy[a], -vy[b])
-        nyh, nyl = dd.two_sum(vx[b], -vx[a])
-        inv = 1.0 / math.sqrt(nxh * nxh + nyh * nyh)
-        nxh, nxl = dd.scale(nxh, nxl, inv)
-        nyh, nyl = dd.scale(nyh, nyl, inv)
-        n = _CarefulVector(nxh, nxl, nyh, nyl)
-        _careful_row(pieces, facet, side, u, n, a, base, count)
+    for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+        row = careful_bound(pieces, z, facet.finger, facet.start, side, finger, piece, s)
+        _store_bound(row, base, count)
         count += 1
     if across_tips:
-        before = ptr[piece + 1] - 1
-        for s in range(ptr[piece], ptr[piece + 1]):
+        before = pieces.ptr[piece + 1] - 1
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
             tip = tip_at(pieces, before, s, SHARP)
             if tip.sharp:  # the direction of such a half plane need not be exact
                 n = _CarefulVector(tip.n_x, 0.0, tip.n_y, 0.0)
-                _careful_row(pieces, facet, side, u, n, slot_vertex[s], base, count)
+                a = pieces.slot_vertex[s]
+                row = _bound_through(pieces, z, facet.finger, facet.start, side, finger, a, n)
+                _store_bound(row, base, count)
                 count += 1
             before = s
     return count
 
 
 @compiled_borrowing
-def _careful_row(pieces, facet, side, u, n, a, base, count):
-    """The half plane through vertex ``a``, of normal n, for the finger at u from the facet's."""
-    base[count, _C_GX], base[count, _C_GX + 1] = dd.dot(
-        u.x_hi, u.x_lo, u.y_hi, u.y_lo, n.x_hi, n.x_lo, n.y_hi, n.y_lo
-    )
-    base[count, _C_GY], base[count, _C_GY + 1] = dd.dot(
-        u.x_hi, u.x_lo, -u.y_hi, -u.y_lo, n.y_hi, n.y_lo, n.x_hi, n.x_lo
-    )
-    base[count, _C_ALONG], base[count, _C_ALONG + 1] = dd.dot(
-        n.x_hi, n.x_lo, n.y_hi, n.y_lo, side.x_hi, side.x_lo, side.y_hi, side.y_lo
-    )
-    dxh, dxl = dd.two_sum(pieces.x[a], -pieces.x[facet.start])
-    dyh, dyl = dd.two_sum(pieces.y[a], -pieces.y[facet.start])
-    base[count, _C_BOUND], base[count, _C_BOUND + 1] = dd.dot(
-        n.x_hi, n.x_lo, n.y_hi, n.y_lo, dxh, dxl, dyh, dyl
+def _store_bound(row, base, a):
+    base[a, _C_GX], base[a, _C_GX + 1] = row.g.x_hi, row.g.x_lo
+    base[a, _C_GY], base[a, _C_GY + 1] = row.g.y_hi, row.g.y_lo
+    base[a, _C_ALONG], base[a, _C_ALONG + 1] = row.along_hi, row.along_lo
+    base[a, _C_BOUND], base[a, _C_BOUND + 1] = row.c_hi, row.c_lo
+
+
+@compiled_borrowing
+def _stored_bound(base, a):
+    g = _CarefulVector(base[a, _C_GX], base[a, _C_GX + 1], base[a, _C_GY], base[a, _C_GY + 1])
+    return CarefulBound(
+        g, base[a, _C_ALONG], base[a, _C_ALONG + 1], base[a, _C_BOUND], base[a, _C_BOUND + 1]
     )
 
 
@@ -100,10 +169,8 @@ def pass_careful(pieces, z, facet, cap, give):
     """
     base = np.empty((MAX_BASE, 8))
     rows = np.empty((MAX_ROWS, 6))
-    slack = _CAREFUL_SLACK * pieces.scale
-    x_hi, x_lo = dd.two_sum(pieces.x[facet.end], -pieces.x[facet.start])
-    y_hi, y_lo = dd.two_sum(pieces.y[facet.end], -pieces.y[facet.start])
-    side = _CarefulVector(x_hi, x_lo, y_hi, y_lo)
+    slack = CAREFUL_SLACK * pieces.scale
+    side = careful_side(pieces, facet.start, facet.end)
     tips = give > 0.0
     n = _careful_rows(pieces, z, facet, side, facet.second, facet.second_piece, tips, base, 0)
     n = _careful_rows(pieces, z, facet, side, facet.third, facet.third_piece, tips, base, n)
@@ -122,33 +189,18 @@ def pass_careful(pieces, z, facet, cap, give):
     for a in range(n):
         ha = base[a, _C_ALONG]
         if ha == 0.0:
-            g = _CarefulVector(
-                base[a, _C_GX], base[a, _C_GX + 1], base[a, _C_GY], base[a, _C_GY + 1]
-            )
-            count, feasible = _careful_put(
-                g, base[a, _C_BOUND], base[a, _C_BOUND + 1], cap, slack, rows, count
-            )
+            alone = _stored_bound(base, a)
+            count, feasible = _careful_put(alone.g, alone.c_hi, alone.c_lo, cap, slack, rows, count)
             if not feasible:
                 return LeastNorm(INFEASIBLE, 0.0, 0.0)
         elif ha > 0.0:
             for b in range(n):
                 hb = base[b, _C_ALONG]
                 if hb < 0.0:
-                    # over the larger weight, so that no row is scaled up from nothing
-                    inv = 1.0 / max(ha, -hb)
-                    mah, mal = dd.scale(ha, base[a, _C_ALONG + 1], inv)
-                    mbh, mbl = dd.scale(-hb, -base[b, _C_ALONG + 1], inv)
-                    th, tl = dd.mul(mah, mal, base[b, _C_GX], base[b, _C_GX + 1])
-                    sh, sl = dd.mul(mbh, mbl, base[a, _C_GX], base[a, _C_GX + 1])
-                    gxh, gxl = dd.add(th, tl, sh, sl)
-                    th, tl = dd.mul(mah, mal, base[b, _C_GY], base[b, _C_GY + 1])
-                    sh, sl = dd.mul(mbh, mbl, base[a, _C_GY], base[a, _C_GY + 1])
-                    gyh, gyl = dd.add(th, tl, sh, sl)
-                    th, tl = dd.mul(mah, mal, base[b, _C_BOUND], base[b, _C_BOUND + 1])
-                    sh, sl = dd.mul(mbh, mbl, base[a, _C_BOUND], base[a, _C_BOUND + 1])
-                    ch, cl = dd.add(th, tl, sh, sl)
-                    g = _CarefulVector(gxh, gxl, gyh, gyl)
-                    count, feasible = _careful_put(g, ch, cl, cap, slack, rows, count)
+                    both = careful_row(_stored_bound(base, a), _stored_bound(base, b))
+                    count, feasible = _careful_put(
+                        both.g, both.c_hi, both.c_lo, cap, slack, rows, count
+                    )
                     if not feasible:
                         return LeastNorm(INFEASIBLE, 0.0, 0.0)
     return min_norm_careful(rows, count, slack)

@@ -22,14 +22,19 @@ from icage.kernels.compiled import compiled_borrowing
 
 
 class NormStatus(IntEnum):
-    """Whether there is a point; ``UNSURE``: doubles cannot tell, or not well enough where."""
+    """Whether there is a point.
+
+    ``UNSURE``: doubles cannot tell, or not well enough where. ``NARROW``: it is there if rows hold
+    of which doubles cannot tell whether they do.
+    """
 
     UNSURE = -1
     INFEASIBLE = 0
     FOUND = 1
+    NARROW = 2
 
 
-UNSURE, INFEASIBLE, FOUND = NormStatus
+UNSURE, INFEASIBLE, FOUND, NARROW = NormStatus
 
 _PARALLEL = 1e-13
 """[1] Sine of the angle between two rows below which they count as parallel: rows are unit vectors

@@ -147,12 +147,24 @@ def pass_value(pieces, z, facet, cap, worst, room):
     found = pass_fast(pieces, z, facet, cap, worst, room)
     if found.status == UNSURE:
         room.tally[1] += 1
-        found = pass_careful(pieces, z, facet, cap, 0.0)
-        # as little as will do: in a sliver what is given comes back a thousandfold in sigma
-        give = _FIRST_GIVE * CLEARANCE * pieces.scale
-        while found.status == INFEASIBLE and give <= 1.01 * CLEARANCE * pieces.scale:
-            found = pass_careful(pieces, z, facet, cap, give)
-            give *= 10.0
+        return value_carefully(pieces, z, facet, cap)
+    return _up_to(found, cap)
+
+
+@compiled_borrowing
+def value_carefully(pieces, z, facet, cap):
+    """The same in double-double from the start."""
+    found = pass_careful(pieces, z, facet, cap, 0.0)
+    # as little as will do: in a sliver what is given comes back a thousandfold in sigma
+    give = _FIRST_GIVE * CLEARANCE * pieces.scale
+    while found.status == INFEASIBLE and give <= 1.01 * CLEARANCE * pieces.scale:
+        found = pass_careful(pieces, z, facet, cap, give)
+        give *= 10.0
+    return _up_to(found, cap)
+
+
+@compiled_borrowing
+def _up_to(found, cap):
     if found.status == INFEASIBLE:
         return Pass(np.inf, 0.0, 0.0)
     sigma = math.sqrt(found.w_x * found.w_x + found.w_y * found.w_y)

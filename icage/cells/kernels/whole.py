@@ -1,22 +1,30 @@
 """All passes and all least points of one hand's free space: its whole sublevel structure.
 
-Only cells that hold a hand are looked at, each facet once. A stage takes a stretch of the cells,
-so that threads can share it; what comes out does not depend on how the stretches are cut. Our own.
-[docs/decisions/0014-whole-sublevels.md]
+Only cells that hold a hand are looked at, all facets on one edge of a piece together. A stage takes
+one piece of one finger, so that threads can share it; what comes out does not depend on who took
+which. Our own. [docs/decisions/0014-whole-sublevels.md]
 """
 
 # pyright: basic
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, facet_of, finger_on_segment
-from icage.cells.kernels.passes import new_room, pass_value
+from icage.cells.kernels.along import new_bounds, put_bounds, segment_between
+from icage.cells.kernels.confirmed import confirmed
+from icage.cells.kernels.facet import BASE_COLUMNS, MAX_BASE, Facet, facet_of, finger_on_segment
+from icage.cells.kernels.least_along import HERE, THERE, least_along
+from icage.cells.kernels.min_norm import FOUND, INFEASIBLE, UNSURE
+from icage.cells.kernels.passes import new_room, pass_value, value_carefully
 from icage.cells.kernels.search import birth
-from icage.kernels.compiled import compiled
-from icage.kernels.union_find import root_of
+from icage.kernels.compiled import compiled, compiled_borrowing
+
+LEAST, EMPTY = range(2)
+"""Columns of ``told`` (n, 2), 1 where it is known of a cell: its least point is on a pass; it holds
+no hand up to the cap. Each is only ever put to 1, so that threads may do so at once."""
 
 _SAME = 1e-9
 """[diameter] Least points that two fingers tell of are one if they differ by less: far above the
@@ -31,150 +39,207 @@ class Passes(NamedTuple):
     sigma: np.ndarray
 
 
-class LeastPoints(NamedTuple):
-    """Least sigma (n,) of cells, and the edge of its piece that the finger is on there.
+class Lists(NamedTuple):
+    """Cells by the piece of one finger: those of piece p are the rows begin[p]:begin[p + 1].
 
-    ``finger`` and ``slot`` (n,) are -1 where the least point is on a pass, or is a pinched hand.
+    ``key`` (n,) are the pieces of the two others, a m + b, in ascending order within a piece;
+    ``number`` (n,) is the number of the cell.
     """
 
-    sigma: np.ndarray
-    finger: np.ndarray
-    slot: np.ndarray
+    begin: np.ndarray
+    key: np.ndarray
+    number: np.ndarray
 
 
-class Ends(NamedTuple):
-    """Where the minima of cells end, by the elder rule.
+@compiled
+def cells_by_piece(cells, m, i):
+    """The cells (n, 3), which are in order, by the piece of finger i."""
+    fingers = cells.shape[1]
+    a, b = min((i + 1) % fingers, (i + 2) % fingers), max((i + 1) % fingers, (i + 2) % fingers)
+    begin = np.zeros(m + 1, np.int64)
+    for n in range(len(cells)):
+        begin[cells[n, i] + 1] += 1
+    for piece in range(m):
+        begin[piece + 1] += begin[piece]
+    at = begin[:-1].copy()
+    key = np.empty(len(cells), np.int32)
+    number = np.empty(len(cells), np.int32)
+    for n in range(len(cells)):
+        row = at[cells[n, i]]
+        key[row] = cells[n, a] * m + cells[n, b]
+        number[row] = n
+        at[cells[n, i]] += 1
+    return Lists(begin, key, number)
 
-    ``merged`` (n,) is the level at which the component of which a cell is the minimum meets a
-    deeper one, whose minimum is the cell ``elder`` (n,); inf and -1: never.
+
+@compiled_borrowing
+def _least(pieces, bounds, at_j, at_k, cap, worst):
+    """The least point with the second finger in piece ``at_j`` and the third in ``at_k``."""
+    ptr, upper, slots = pieces.ptr, bounds.upper, len(pieces.slot_vertex)
+    return least_along(
+        bounds.check, bounds.rest, bounds.near, ptr[at_j], upper[0, at_j], ptr[at_j + 1],
+        slots + ptr[at_k], upper[1, at_k], slots + ptr[at_k + 1], cap, worst,
+    )  # fmt: skip
+
+
+@compiled_borrowing
+def _value(pieces, z, i, segment, at_j, at_k, bounds, found, cap):
+    """Least sigma, inf for none up to ``cap``."""
+    if found.status == INFEASIBLE:
+        return np.inf
+    wx, wy = found.w_x, found.w_y
+    if found.status != FOUND:
+        fingers = len(z)
+        j, k = (i + 1) % fingers, (i + 2) % fingers
+        facet = Facet(i, segment.start, segment.end, j, at_j, k, at_k)
+        if found.status == UNSURE:
+            return value_carefully(pieces, z, facet, cap).sigma
+        status, wx, wy = confirmed(pieces, z, facet, bounds.slot, bounds.near, found)
+        if status == UNSURE:
+            return value_carefully(pieces, z, facet, cap).sigma
+    sigma = math.sqrt(wx * wx + wy * wy)
+    return sigma if sigma <= cap else np.inf
+
+
+@compiled
+def passes_from(pieces, z, lists, told, i, piece, cap, worst):
+    """Passes up to ``cap`` that finger i makes from a piece into later ones.
+
+    And what they tell of the cells on both sides.
     """
-
-    merged: np.ndarray
-    elder: np.ndarray
-
-
-@compiled
-def rows_of(cells, m):
-    """(m^2 + 1,) where the cells (a, b, .) begin, at a m + b, in cells (n, 3) that are in order."""
-    row = np.zeros(m * m + 1, np.int64)
-    for k in range(len(cells)):
-        row[cells[k, 0] * m + cells[k, 1] + 1] += 1
-    for pair in range(m * m):
-        row[pair + 1] += row[pair]
-    return row
-
-
-@compiled
-def _number_of(cells, row, m, cell):
-    """Number of a cell, -1 if it is not among those that hold a hand."""
-    pair = cell[0] * m + cell[1]
-    low, high = row[pair], row[pair + 1]
-    while low < high:
-        middle = (low + high) >> 1
-        if cells[middle, 2] < cell[2]:
-            low = middle + 1
-        else:
-            high = middle
-    return low if low < row[pair + 1] and cells[low, 2] == cell[2] else -1
-
-
-@compiled
-def passes_between(pieces, z, cells, row, first, last, cap, worst):
-    """Passes up to ``cap`` from the cells ``first`` to ``last`` to those across later pieces."""
     m = len(pieces.ptr) - 1
-    room = new_room()
-    lower = np.empty(1024, np.int32)
-    upper = np.empty(1024, np.int32)
-    sigma = np.empty(1024)
-    cell = np.empty(len(z), np.int64)
+    fingers = len(z)
+    j, k = (i + 1) % fingers, (i + 2) % fingers
+    bounds = new_bounds(pieces)
+    begin, key, number = lists.begin, lists.key, lists.number
+    most = 0
+    for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+        other = pieces.slot_neighbour[s]
+        if other > piece:
+            most += min(begin[piece + 1] - begin[piece], begin[other + 1] - begin[other])
+    lower = np.empty(most, np.int32)
+    upper = np.empty(most, np.int32)
+    sigma = np.empty(most)
     count = 0
-    for k in range(first, last):
-        cell[:] = cells[k]
-        for i in range(len(z)):
-            piece = cell[i]
-            for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
-                if pieces.slot_neighbour[s] <= piece:
-                    continue
-                cell[i] = pieces.slot_neighbour[s]
-                across = _number_of(cells, row, m, cell)
-                cell[i] = piece
-                if across < 0:
-                    continue
-                value = pass_value(pieces, z, facet_of(pieces, cell, i, s), cap, worst, room).sigma
-                if value == np.inf:
-                    continue
-                if count == len(lower):
-                    lower = np.concatenate((lower, np.empty_like(lower)))
-                    upper = np.concatenate((upper, np.empty_like(upper)))
-                    sigma = np.concatenate((sigma, np.empty_like(sigma)))
-                lower[count], upper[count], sigma[count] = k, across, value
+    for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+        other = pieces.slot_neighbour[s]
+        if other <= piece:
+            continue
+        segment = segment_between(pieces, piece, s)
+        put_bounds(pieces, z, segment, i, bounds)
+        x, y = begin[piece], begin[other]
+        while x < begin[piece + 1] and y < begin[other + 1]:
+            if key[x] < key[y]:
+                x += 1
+                continue
+            if key[x] > key[y]:
+                y += 1
+                continue
+            here, there = number[x], number[y]
+            at_j, at_k = key[x] // m, key[x] % m
+            if j > k:
+                at_j, at_k = at_k, at_j
+            x += 1
+            y += 1
+            if bounds.touches[at_j] & bounds.touches[at_k]:
+                value = 0.0  # all fingers in one corner
+            else:
+                found = _least(pieces, bounds, at_j, at_k, cap, worst)
+                value = _value(pieces, z, i, segment, at_j, at_k, bounds, found, cap)
+                of = LEAST if value < np.inf else EMPTY
+                if found.told & HERE:
+                    told[here, of] = 1
+                if found.told & THERE:
+                    told[there, of] = 1
+            if value < np.inf:
+                lower[count], upper[count], sigma[count] = min(here, there), max(here, there), value
                 count += 1
-    return Passes(lower[:count], upper[:count], sigma[:count])
+    return Passes(lower[:count].copy(), upper[:count].copy(), sigma[:count].copy())
 
 
 @compiled
 def least_passes(count, lower, upper, sigma):
-    """The least pass (count,) of every cell, inf for none."""
+    """The least pass (count,) of every cell, inf for none, and which it is, -1 for none."""
     least = np.full(count, np.inf)
+    which = np.full(count, -1, np.int32)
     for e in range(len(sigma)):
-        least[lower[e]] = min(least[lower[e]], sigma[e])
-        least[upper[e]] = min(least[upper[e]], sigma[e])
-    return least
+        if sigma[e] < least[lower[e]]:
+            least[lower[e]], which[lower[e]] = sigma[e], e
+        if sigma[e] < least[upper[e]]:
+            least[upper[e]], which[upper[e]] = sigma[e], e
+    return least, which
 
 
 @compiled
-def _walls(pieces, piece):
-    """How many edges of a piece lead nowhere."""
-    count = 0
-    for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
-        count += pieces.slot_neighbour[s] < 0
-    return count
+def edges_that_lead_nowhere(pieces):
+    """How many (m,) of the edges of every piece are the object's."""
+    walls = np.zeros(len(pieces.ptr) - 1, np.int64)
+    for piece in range(len(walls)):
+        for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+            walls[piece] += pieces.slot_neighbour[s] < 0
+    return walls
 
 
 @compiled
-def least_points(pieces, z, cells, least, first, last, cap, worst):
-    """Least sigma of the cells ``first`` to ``last``, of which the least pass is known.
+def lower_at_walls(pieces, z, lists, told, walls, low, finger, slot, i, piece, worst):
+    """Lower ``low`` to where finger i is on an edge of its piece that leads nowhere.
 
     At a positive minimum two fingers are held by an edge of their piece: of any two of the three
     one is. What is no pass has it on an edge that leads nowhere, so the finger with the most of
-    those is not asked. Only of a cell without a pass all are asked: one that is empty but for a
-    hand which touches on all sides has a least point on some edges and, by rounding, no pass to
-    the cells with the same hand. Two fingers must tell of it.
+    those is not asked. Cells without a pass are left out, see ``least_of_isolated``.
+    """
+    m = len(pieces.ptr) - 1
+    fingers = len(z)
+    j, k = (i + 1) % fingers, (i + 2) % fingers
+    bounds = new_bounds(pieces)
+    cell = np.empty(fingers, np.int64)
+    for s in range(pieces.ptr[piece], pieces.ptr[piece + 1]):
+        if pieces.slot_neighbour[s] >= 0:
+            continue
+        segment = segment_between(pieces, piece, s)
+        put_bounds(pieces, z, segment, i, bounds)
+        for x in range(lists.begin[piece], lists.begin[piece + 1]):
+            n = lists.number[x]
+            if told[n, LEAST] or not 0.0 < low[n] < np.inf:
+                continue
+            at_j, at_k = lists.key[x] // m, lists.key[x] % m
+            if j > k:
+                at_j, at_k = at_k, at_j
+            cell[i], cell[j], cell[k] = piece, at_j, at_k
+            if np.argmax(walls[cell]) == i:
+                continue
+            found = _least(pieces, bounds, at_j, at_k, low[n], worst)
+            value = _value(pieces, z, i, segment, at_j, at_k, bounds, found, low[n])
+            if value < np.inf and found.told & HERE:
+                told[n, LEAST] = 1
+            if value < low[n]:
+                low[n], finger[n], slot[n] = value, i, s
+
+
+@compiled
+def least_of_isolated(pieces, z, cells, isolated, low, finger, slot, cap, worst):
+    """Put ``low`` of the cells ``isolated`` (k,), which have no pass.
+
+    One that is empty but for a hand which touches on all sides has a least point on some edges and,
+    by rounding, no pass to the cells with the same hand. Two fingers must tell of it.
     """
     room = new_room()
-    low = least[first:last].copy()
-    at_finger = np.full(last - first, -1, np.int8)
-    at_slot = np.full(last - first, -1, np.int32)
-    walls = np.empty(len(pieces.ptr) - 1, np.int64)
-    for piece in range(len(walls)):
-        walls[piece] = _walls(pieces, piece)
     cell = np.empty(len(z), np.int64)
     held = np.empty(len(z))
-    for k in range(first, last):
-        n = k - first
-        cell[:] = cells[k]
-        if cell[0] == cell[1] and cell[1] == cell[2]:
-            low[n] = 0.0
-        if low[n] == 0.0:
-            continue
-        spared = np.argmax(walls[cell]) if low[n] < np.inf else -1
+    for n in isolated:
+        cell[:] = cells[n]
         held[:] = np.inf
         for i in range(len(z)):
-            if i == spared:
-                continue
             for s in range(pieces.ptr[cell[i]], pieces.ptr[cell[i] + 1]):
                 if pieces.slot_neighbour[s] >= 0:
                     continue
-                most = min(low[n] if spared >= 0 else held[i], cap)
                 facet = facet_of(pieces, cell, i, s)
-                value = pass_value(pieces, z, facet, most, worst, room).sigma
+                value = pass_value(pieces, z, facet, min(held[i], cap), worst, room).sigma
                 held[i] = min(held[i], value)
                 if value < low[n]:
-                    low[n] = value
-                    at_finger[n], at_slot[n] = i, s
-        if spared < 0 and np.sum(held <= low[n] + _SAME * pieces.diameter) < 2:
-            low[n] = np.inf
-    return LeastPoints(low, at_finger, at_slot)
+                    low[n], finger[n], slot[n] = value, i, s
+        if np.sum(held <= low[n] + _SAME * pieces.diameter) < 2:
+            low[n], finger[n], slot[n] = np.inf, -1, -1
 
 
 @compiled
@@ -201,29 +266,3 @@ def least_hands(pieces, z, cells, fingers, slots, cap, worst):
         hands[k, 1] = 0.5 * (ends.y_lo + ends.y_hi) - (wx * z[finger, 1] + wy * z[finger, 0])
         hands[k, 2], hands[k, 3] = wx, wy
     return hands
-
-
-@compiled
-def ends_of_minima(low, lower, upper, sigma, order):
-    """Merges of all cells, born at ``low`` (n,), over passes taken in ``order``. [Kruskal1956]"""
-    n = len(low)
-    parent = np.arange(n)
-    size = np.ones(n, np.int32)
-    lowest = np.arange(n)
-    merged = np.full(n, np.inf)
-    elder = np.full(n, -1)
-    for e in order:
-        a, b = root_of(parent, lower[e]), root_of(parent, upper[e])
-        if a == b:
-            continue
-        keep, lose = lowest[a], lowest[b]
-        if low[lose] < low[keep] or (low[lose] == low[keep] and lose < keep):
-            keep, lose = lose, keep
-        merged[lose] = sigma[e]
-        elder[lose] = keep
-        if size[a] < size[b]:
-            a, b = b, a
-        parent[b] = a
-        size[a] += size[b]
-        lowest[a] = keep
-    return Ends(merged, elder)

@@ -28,11 +28,7 @@ from icage.cells.kernels.passes import new_room, pass_value
 from icage.cells.kernels.region import least_points
 from icage.cells.kernels.search import _least_on_walls, birth, explore
 from icage.cells.kernels.tree import births, find_at, merge, visited_births, way_to
-from icage.cells.kernels.whole import (
-    ends_of_minima,
-    least_hands,
-    least_passes,
-)
+from icage.cells.kernels.whole import least_hands
 from tests.icage.cells.setting import Setting
 from tests.oracles.geometry import Floats
 
@@ -226,15 +222,6 @@ def test_minima_merge_by_the_elder_rule() -> None:
                 owner = [owner[a] if o == owner[b] else o for o in owner]
             start = {owner[keep]: 2, owner[lose]: 1}.get(owner[0], 0)
             assert [0, 1, 2].index(start) == int(side), (level, side)
-        order = np.argsort(value[used], kind="stable")
-        whole = ends_of_minima(low, ends[used, 0], ends[used, 1], value[used], order)
-        for k, (level, elder) in kruskal(low, ends[used], value[used]).items():
-            assert (whole.merged[k], whole.elder[k]) == (level, elder)
-        assert (whole.merged == np.inf).sum() == (whole.elder == -1).sum()
-        least = least_passes(n, ends[used, 0], ends[used, 1], value[used])
-        for k in range(n):
-            at = value[used][(ends[used] == k).any(axis=1)]
-            assert least[k] == (at.min() if len(at) else np.inf)
 
 
 @pytest.mark.parametrize("seed", [1, 3])

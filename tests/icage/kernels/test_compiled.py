@@ -107,6 +107,36 @@ def test_environments_of_one_checkout_keep_their_caches_apart(tmp_path: Path) ->
     assert sorted(name[-6:] for name in names) == ["eA.nbi", "eB.nbi"]
 
 
+RENAMED = """
+import sys
+from typing import NamedTuple
+from icage.kernels.digest import kernel_sources
+from icage.kernels.machine import stamped
+import one_with_a_class as module
+call = stamped(module.one, kernel_sources())
+given = getattr(module, sys.argv[1])(2.0)
+print(call(given), sum(call.stats.cache_hits.values()))
+"""
+
+
+def test_a_cache_that_names_a_class_that_is_no_more_is_stale(tmp_path: Path) -> None:
+    source = tmp_path / "one_with_a_class.py"
+    root = Path(__file__).parents[3]
+    path = os.pathsep.join([str(root), str(tmp_path)])
+    own = {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), background.SWITCH: "0"}
+    (tmp_path / "cache").mkdir()
+    told = []
+    for name in ("Old", "New", "New"):
+        text = f"class {name}(NamedTuple):\n    x: float\n\n\ndef one(given):\n    return given.x\n"
+        source.write_text(f"from typing import NamedTuple\n\n\n{text}")
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", RENAMED, name], check=True, capture_output=True, text=True,
+            cwd=tmp_path, env={**os.environ, **own},
+        )  # fmt: skip
+        told.append(done.stdout.split())
+    assert told == [["2.0", "0"], ["2.0", "0"], ["2.0", "1"]]
+
+
 ACROSS_AN_UPDATE = """
 import sys
 from pathlib import Path
