@@ -15,9 +15,9 @@ from icage.discs.kernels.features import (
     nearly_balanced,
     put_gaps,
 )
-from icage.kernels.forces import _without_pulling, least_squares, pushing_of
 from icage.discs.kernels.newton import Ended, _half_planes, _solved, descend, newton
 from icage.hand import HandShape
+from icage.kernels.forces import _without_pulling, least_squares, pushing_of
 from icage.outline import Outline
 from tests.oracles.geometry import Floats
 from tests.oracles.targets import random_target
