@@ -128,10 +128,13 @@ def _on_true_curve(cage: Cage, work: CageWork, nodes: IntArray) -> Iterator[Brin
 
     size, frame = cage.outline.diameter, NearFrame.of(cage.outline)
     critical = CriticalHands(frame.outline_into(cage.outline), cage.finger_radius, cage.hand)
-    grasps = [frame.into(grasp.contacts) for grasp in cage.grasps]
     top = np.inf if cage.sigma_first is None else cage.sigma_first * (1.0 - LEVEL)
     reach = REACH * work.sagitta + SAME * size
     hands = work.least_hands_of(nodes)
+    # a grasp of the plan that hands below sigma_first lie at is none but a brink: closing along the
+    # true curve from where the polygon has a minimum came to a stop on it
+    grasps = [frame.into(grasp.contacts) for grasp in cage.grasps]
+    grasps = [one for one in grasps if np.abs(hands - one).max(axis=(1, 2)).min() > reach]
     # what is found there is the target
     away = ~are_beside(hands, frame.into(cage.contacts), size)
     likely = away & (_least_and_unpushed(work, nodes)[1] <= _NEARLY)

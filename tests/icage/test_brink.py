@@ -217,6 +217,32 @@ def test_a_minimum_too_shallow_to_count_is_one() -> None:
     assert 1e-6 < vertex < 2e-6
 
 
+def test_a_grasp_of_the_plan_may_be_one() -> None:
+    """A minimum of chords, followed down the true curve, comes to a stop on a brink."""
+    ring = [
+        [0.4437915394789664, 0.034798342086403984],
+        [0.200030094393338, 0.3206456538378721],
+        [-0.0943384948139436, 0.7369704529807647],
+        [-0.6631034649510917, 0.7467255615895141],
+        [-0.6948261961468519, 0.23761357120482463],
+        [-0.861873138199469, -0.378049160837765],
+        [-0.19485921808936366, -0.47821352701875197],
+        [0.33517358330454755, -0.5300195111302483],
+        [0.5037046828189589, -0.2575698743492043],
+    ]
+    target = [
+        [-0.5657969394209847, -0.4826678839090345],
+        [0.5110869852433833, 0.0027436807169848865],
+        [-0.5074044718593205, 0.8035542814478865],
+    ]
+    cage = plan(ring, target, 0.0594904241708276)
+    assert cage.brink is not None
+    assert cage.sigma_first is not None
+    assert cage.brink.sigma < cage.sigma_first * (1.0 - 1e-4)
+    off = [float(np.abs(one.contacts - cage.brink.contacts).max()) for one in cage.grasps]
+    assert min(off) < 1e-9
+
+
 NONE = ("L_best", "T_best", "triangle_eq_best", "disc_Y", "hammer_best", "notched_bar_best")
 """Of the last a finger stands on the line of an edge beyond its end, where it touches nothing."""
 
