@@ -193,7 +193,15 @@ class Case(Value):
         wanted = Wanted(aim, limits=hand, avoid=as_stretches(avoid), tolerance=tolerance, mu=mu)
         if seconds is not None and a_number(seconds, "seconds") <= 0.0:
             raise InputError(f"seconds is {seconds:g}; more than 0 is needed")
-        return grasps_in(best_of_case(self, top, wanted, draws, workers, progress, seconds))
+        if progress is not None and not callable(progress):
+            raise InputError(f"progress is {progress!r}; what can be called is needed, or None")
+        planned = best_of_case(self, top, wanted, draws, workers, progress, seconds)
+        if not planned.cages:
+            raise GraspError(
+                f"none of the {len(planned.failures)} grasps that were found is one of these "
+                f"fingers: {planned.reason_words()}"
+            )
+        return grasps_in(planned)
 
     def _repr_svg_(self) -> str:
         from icage.formats.picture import case_picture

@@ -105,8 +105,8 @@ def check_radius(case: Case) -> None:
     """
     if case.finger_radius > case.outline.diameter:
         raise InputError(
-            f"--finger-radius {case.finger_radius:g}: the object's diameter is "
-            f"{case.outline.diameter:g}"
+            f"the finger radius of {case.name} is {case.finger_radius:g}; up to the object's "
+            f"diameter, {case.outline.diameter:g}, is allowed"
         )
 
 

@@ -10,22 +10,19 @@ from __future__ import annotations
 import heapq
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from icage.arrays import FloatArray, read_only
+from icage.cage import Cage
 from icage.cells.work import work_of
-from icage.checks import a_number
+from icage.checks import a_number, an_instance
 from icage.errors import InputError
 from icage.friction.jam import Jam, JamTolerance
 from icage.friction.jam_search import JamSearch
 from icage.friction.levels import FrictionLevel, checked_mu, limited
 from icage.library_faults import geometry_told
 from icage.values import Value
-
-if TYPE_CHECKING:
-    from icage.cage import Cage
 
 _MOST = 500
 """Coefficients at which the level is computed."""
@@ -116,9 +113,11 @@ class FrictionCurve(Value):
         Raises
         ------
         InputError:
-            No number.
+            No positive number.
         """
         opening = a_number(opening, "the opening")
+        if opening <= 0.0:
+            raise InputError(f"the opening is {opening:g}; more than 0 is needed")
         below = np.flatnonzero(self.level > opening)
         if not len(below):
             return None
@@ -148,7 +147,7 @@ def friction_curve(
     Raises
     ------
     InputError:
-        ``largest`` is not a positive number.
+        ``largest`` is not a positive number; no cage.
     MethodError:
         The cage was planned by the contact space: plan it by the cells.
 
@@ -167,6 +166,7 @@ def friction_curve(
     >>> round(curve.mu_max(0.6), 6)
     0.020003
     """
+    an_instance(cage, Cage, "cage", "; icage.plan makes one")
     largest = checked_mu(largest, "largest")
     if largest == 0.0:
         raise InputError("largest is 0; a curve needs a positive coefficient of friction")

@@ -10,21 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from icage.cage import Cage
 from icage.cells.work import work_of
-from icage.checks import a_number
+from icage.checks import a_number, an_instance
 from icage.errors import InputError
 from icage.friction.ends import JamEnds, jam_ends
 from icage.friction.jam import Jam, JamTolerance
 from icage.friction.jam_search import JamSearch
 from icage.library_faults import geometry_told
 from icage.tolerance import LEVEL
-
-if TYPE_CHECKING:
-    from icage.cage import Cage
 
 __all__ = [
     "FrictionLevel", "Jam", "JamEnds", "JamTolerance", "checked_mu", "friction_levels", "limited",
@@ -79,7 +76,7 @@ def friction_levels(
     Raises
     ------
     InputError:
-        A coefficient that is negative or no number.
+        A coefficient that is negative or no number; no cage.
     GeometryError:
         Disc fingers on an object that has no true curve: two parts of it are just two radii apart.
     MethodError:
@@ -95,7 +92,12 @@ def friction_levels(
     >>> [round(level.sigma_first, 4) for level in friction_levels(cage, (0.0, 0.3))]
     [0.866, 0.5001]
     """
-    asked = tuple(checked_mu(mu) for mu in mus)
+    an_instance(cage, Cage, "cage", "; icage.plan makes one")
+    try:
+        asked = tuple(checked_mu(mu) for mu in mus)
+    except TypeError as error:
+        several = "several coefficients are needed, such as (0.1, 0.2)"
+        raise InputError(f"mus is {mus!r}; {several}") from error
     chosen = JamTolerance() if tolerance is None else tolerance
     work = work_of(cage)
     best = FrictionLevel(0.0, cage.sigma_first, None, chosen, cage)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from icage.case import Case
-from icage.errors import InputError
+from icage.errors import GraspError, InputError
 from icage.grasp import Grasp
 from icage.grasps.crew import Progress
 from icage.grasps.planned import PlannedGrasps, planned_grasps
@@ -33,7 +33,7 @@ def best_of_case(
     Raises
     ------
     GraspError:
-        No immobilizing three-finger grasp was found.
+        No immobilizing three-finger grasp was found, or none before the search was ended.
     InputError:
         ``top`` below 1.
     """
@@ -47,6 +47,12 @@ def best_of_case(
     )  # fmt: skip
     contacts = (candidate.contacts for candidate in found.candidates)
     planned = planned_grasps(case.outline, radius, contacts, wanted, top)
+    if found.ended is not None and not planned.cages:
+        raise GraspError(
+            f"no grasp was found before the search was {found.ended}: none of the "
+            f"{len(planned.failures)} that it had is one ({planned.reason_words()}); more time may "
+            "help"
+        )
     return replace(
         planned,
         triples_left_out=found.triples_left_out,

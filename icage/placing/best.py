@@ -154,6 +154,9 @@ def place(
             "no placement is good: closing ends in the target by an exact fit only (a wedge)"
         )
     size = _opening(cage, level, opening)
+    if largest != math.inf:
+        largest = a_number(largest, "largest")
+    an_instance(opening_error, bool, "opening_error")
     if not largest > cage.sigma_0:
         raise InputError(f"largest {largest:g}; above sigma_0 = {cage.sigma_0:.9g} is needed")
     found = _deepest(cage, work, level, size, opening_error, gap, largest)

@@ -136,7 +136,10 @@ def test_an_outline_without_a_grasp_stands_for_a_drawing(
         (["plan", "pliers", "--width", "9"], "for drawings"),
         (["plan", "pliers", "--finger-radius", "1"], "icage.regrasp"),
         (["plan", "t.svg", "--width", "60", "--grasp", "1"], "has no grasps"),
-        (["plan", "t.svg", "--width", "60", "--finger-radius", "99"], "the object's diameter is"),
+        (
+            ["plan", "t.svg", "--width", "60", "--finger-radius", "99"],
+            "up to the object's diameter",
+        ),
         (["replay", "t.svg", "--width", "60", "--out", "o"], "--finger-radius"),
         (["replay", "pliers", "--grasps", "2", "--out", "o"], "comes with its grasp"),
     ],

@@ -42,7 +42,9 @@ def test_every_object_fails_by_itself(folder: Path, grasps: Callable[..., Result
     assert len(found) == 10
     whys = {row["file"]: row["why"] for row in found}
     assert all(why and why.isprintable() and "internal" not in why for why in whys.values())
-    assert whys["a drawing.svg/big fingers.json"] == "--finger-radius 6: the object's diameter is 5"
+    assert whys["a drawing.svg/big fingers.json"] == (
+        "the finger radius of big fingers is 6; up to the object's diameter, 5, is allowed"
+    )
     assert whys["no room.json"].startswith("no immobilizing three-finger grasp was found")
     assert whys["pipe.json"] == "this is no regular file"
     assert "'link.json' does not exist" in whys["link.json"]
