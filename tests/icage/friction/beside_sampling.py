@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from icage.cage import Cage
-from icage.cells.membership import TARGET, query
+from icage.cells.membership import CAGED, TARGET, Answers, query
 from icage.errors import GraspError
 from icage.friction.levels import FrictionLevel, friction_levels
 from icage.outline import Outline
@@ -97,7 +97,7 @@ def compared_on(vertices: Floats, contacts: Floats, mu: float, an_edge: int = AN
     ring = Ring.of(cage.outline.vertices)
     left = residual(ring, found.jam.contacts, mu, OFF * ring.diameter)
     answer = query(cage, found.jam.placement.as_array()[None])
-    return Compared(level, sampled, left, bool(answer.verdict[0] == TARGET))
+    return Compared(level, sampled, left, bool(_in_the_basin(answer)[0]))
 
 
 def compared_disc(seed: int, an_element: int = 13) -> Compared | None:
@@ -135,7 +135,7 @@ def compared_disc_on(cage: Cage, mu: float, an_element: int = 13) -> Compared:
         return Compared(level, sampled, 0.0, True)
     left = disc_jams.residual(curve, found.jam.contacts, mu)
     answer = query(cage, found.jam.placement.as_array()[None])
-    return Compared(level, sampled, left, bool(answer.verdict[0] == TARGET))
+    return Compared(level, sampled, left, bool(_in_the_basin(answer)[0]))
 
 
 def _sampled(cage: Cage, found: FrictionLevel, an_edge: int) -> float:
@@ -166,7 +166,13 @@ def _least_in_the_basin(cage: Cage, hands: Floats, position: float, angle: float
     order = np.argsort(rows[:, 3])
     for chunk in np.split(order, 500 * (2 ** np.arange(1, 16) - 1)):  # twice as many each time
         if len(chunk):
-            inside = np.flatnonzero(query(cage, rows[chunk]).verdict == TARGET)
+            inside = np.flatnonzero(_in_the_basin(query(cage, rows[chunk])))
             if len(inside):
                 return float(rows[chunk[inside[0]], 3])
     return math.inf
+
+
+def _in_the_basin(answers: Answers) -> np.ndarray:
+    """Which placements are in the target's component, of the guaranteed set or above a brink."""
+    every = zip(answers.verdict.tolist(), range(len(answers)), strict=True)
+    return np.array([v == TARGET or (v == CAGED and 0 in answers.grasps_of(k)) for v, k in every])
