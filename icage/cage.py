@@ -17,6 +17,7 @@ from icage.errors import PlacementError
 from icage.geometry.way_out import free_from
 from icage.hand import HandShape, Placement
 from icage.outline import Outline
+from icage.search_log import SearchLog
 from icage.values import Value
 
 if TYPE_CHECKING:
@@ -84,34 +85,6 @@ class Puncture(Value):
 
     def __post_init__(self) -> None:
         _freeze(self, "contacts")
-
-
-@dataclass(frozen=True, slots=True)
-class SearchStep:
-    """One node that a search in contact space has met. [Bunis2018, Sec. VI]
-
-    ``kind`` is "minimum" (least node of a convex region), "side" (a finger passes a vertex),
-    "diagonal" (the third finger passes to the next piece of the plane), "wall" (a gluing seam),
-    "tunnel" or "pinch". ``pair`` are the fingers (1..3) on ``edges``: edge q starts at vertex q of
-    the ring without straight vertices.
-    """
-
-    sigma: float
-    pair: tuple[int, int]
-    edges: tuple[int, int]
-    kind: str
-
-
-@dataclass(frozen=True, slots=True)
-class SearchLog:
-    """How a search in contact space went."""
-
-    iterations: tuple[SearchStep, ...]
-    rectangles_explored: int
-    rectangles_total: int
-    nodes: int
-    tunnel_edges_tried: int
-    tunnel_edges_used: int
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

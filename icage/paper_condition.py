@@ -17,7 +17,7 @@ from icage.cage import Cage
 from icage.cells.membership import VERDICTS, query
 from icage.cells.regions import caging_regions
 from icage.kernels.locate import depth_inside
-from icage.sampling import region_points
+from icage.region_points import region_points
 
 _CHUNK = 20_000
 _MOST_TRIES = 5_000_000

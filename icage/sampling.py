@@ -29,10 +29,9 @@ from icage.cells.regions import outer_bounds
 from icage.errors import GeometryError, IcageError
 from icage.kernels.locate import depth_inside
 from icage.library_faults import geometry_told
+from icage.region_points import Area, Region, Uniform
 
 StartSet = Literal["guaranteed", "rest", "cage"]
-
-Region = shapely.Polygon | shapely.MultiPolygon
 
 TRIES_PER_START = 100_000
 """Hands tried per start asked for before giving up: the rates seen are 1e-3 to 0.2."""
@@ -49,15 +48,6 @@ _GAP = 0.02
 
 _LEAST_SIGMA = 1.0 - 1e-6
 """[1] The least sigma of a set is that of its minima, known to better than this (relative)."""
-
-_FILLED = 1e-9
-"""[1] The triangles of a region fill it to this share of its area: the rounding of many sums."""
-
-_BEFORE = 1.0 - 1e-12
-"""[1] Of a share of an area: the search begins before it for certain, whatever the rounding."""
-
-_STEPS = 4
-"""Triangles gone through before the rest is found by bisection."""
 
 _ROOM = 4e-9
 """[diameter] The outer bounds of regions are noded on a grid of a quarter of this."""
@@ -241,7 +231,7 @@ class Box:
 
     z: NDArray[np.complex128]
     pair: tuple[int, int]
-    areas: tuple[_Area, _Area]
+    areas: tuple[Area, Area]
     third: Region
     floor: float
     top: float
@@ -269,7 +259,7 @@ class Box:
         i, j = pairs[int(np.argmin(volumes))]
         third = regions[3 - i - j]
         shapely.prepare(third)
-        areas = (_Area.of(regions[i]), _Area.of(regions[j]))
+        areas = (Area.of(regions[i]), Area.of(regions[j]))
         return cls(z, (i, j), areas, third, floor * _LEAST_SIGMA, top)
 
     def of_the_set(
@@ -294,7 +284,7 @@ class Box:
         return rows[inside], places[inside]
 
     def _hands(
-        self, one: _Uniform, other: _Uniform
+        self, one: Uniform, other: Uniform
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Hands as d and w (n,), uniform in dx dy sigma dsigma dtheta over the two regions."""
         i, j = self.pair
@@ -312,42 +302,23 @@ def _placements(
 
 
 @dataclass(frozen=True, slots=True)
-class _Uniform:
-    """Numbers in [0, 1) for points of a region: ``triangle`` (n,) says which, ``within`` (2, n)
-    where in it.
-    """
-
-    triangle: FloatArray
-    within: FloatArray
-
-    @classmethod
-    def of_size(cls, rng: np.random.Generator, count: int) -> _Uniform:
-        """Draw them for ``count`` points."""
-        return cls(rng.random(count), rng.random((2, count)))
-
-    def part(self, here: slice) -> _Uniform:
-        """Those of some of the points."""
-        return _Uniform(self.triangle[here], self.within[:, here])
-
-
-@dataclass(frozen=True, slots=True)
 class _Hands:
     """Random numbers of hands (n): of the points of two fingers, and ``kept`` (n,)."""
 
-    one: _Uniform
-    other: _Uniform
+    one: Uniform
+    other: Uniform
     kept: FloatArray
 
     @classmethod
     def of_size(cls, rng: np.random.Generator, count: int) -> _Hands:
         """Draw them for ``count`` hands."""
-        return cls(_Uniform.of_size(rng, count), _Uniform.of_size(rng, count), rng.random(count))
+        return cls(Uniform.of_size(rng, count), Uniform.of_size(rng, count), rng.random(count))
 
     @classmethod
     def joined(cls, parts: Sequence[_Hands]) -> _Hands:
         """Those of all parts, one after another."""
         one, other = (
-            _Uniform(
+            Uniform(
                 np.concatenate([some.triangle for some in pair]),
                 np.concatenate([some.within for some in pair], axis=1),
             )
@@ -358,72 +329,6 @@ class _Hands:
     def part(self, here: slice) -> _Hands:
         """Those of some of the hands."""
         return _Hands(self.one.part(here), self.other.part(here), self.kept[here])
-
-
-@dataclass(frozen=True, slots=True)
-class _Area:
-    """A region cut into triangles, to draw points from.
-
-    ``corner`` and ``sides`` (2, m) each are a triangle's first corner and the ways to the others;
-    ``guide`` (m + 1,) says which triangle the search for a share k / m of the area begins at.
-    """
-
-    corner: FloatArray
-    sides: tuple[FloatArray, FloatArray]
-    cumulative: FloatArray
-    guide: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, region: Region) -> _Area:
-        """Cut a region, holes and all."""
-        cut = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
-        areas = shapely.area(cut)
-        if not abs(areas.sum() - region.area) <= _FILLED * region.area:
-            raise GeometryError("the triangles of a caging region do not fill it")
-        rings = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, :3]
-        a, b, c = np.ascontiguousarray(rings.transpose(1, 2, 0))
-        cumulative = np.cumsum(areas)
-        shares = np.arange(len(cumulative) + 1) / len(cumulative)
-        guide = np.searchsorted(cumulative, _BEFORE * shares * cumulative[-1], "right")
-        return cls(a, (b - a, c - a), cumulative, guide)
-
-    def points(self, uniform: _Uniform) -> NDArray[np.complex128]:
-        """Points (n,), uniform over the region."""
-        at = self._triangles(uniform.triangle)
-        u, v = np.array(uniform.within)
-        over = u + v > 1.0
-        np.subtract(1.0, u, out=u, where=over)
-        np.subtract(1.0, v, out=v, where=over)
-        points = np.empty(len(at), dtype=np.complex128)
-        to_b, to_c = self.sides
-        points.real = self.corner[0][at] + u * to_b[0][at] + v * to_c[0][at]
-        points.imag = self.corner[1][at] + u * to_b[1][at] + v * to_c[1][at]
-        return points
-
-    def _triangles(self, share: FloatArray) -> NDArray[np.int64]:
-        """The first triangles (n,) up to which there is more than ``share`` (n,) of the area.
-
-        What a bisection would find: most are found at the guide's first word, all but a few after
-        some steps.
-        """
-        last = len(self.cumulative) - 1
-        area = share * self.cumulative[-1]
-        at = np.minimum(self.guide[(share * (last + 1)).astype(np.int64)], last)
-        behind = np.flatnonzero(self.cumulative[at] <= area)
-        for _ in range(_STEPS):
-            if not len(behind):
-                return at
-            behind = behind[at[behind] < last]
-            at[behind] += 1
-            behind = behind[self.cumulative[at[behind]] <= area[behind]]
-        found = np.searchsorted(self.cumulative, area[behind], "right")
-        at[behind] = np.minimum(found, last)
-        return at
-
-
-def region_points(region: Region, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
-    """Points (count,), uniform over a region."""
-    return _Area.of(region).points(_Uniform.of_size(rng, count))
 
 
 def _belongs(cage: Cage, which: StartSet, placements: FloatArray) -> BoolArray:

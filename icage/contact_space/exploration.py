@@ -8,7 +8,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from icage.arrays import ComplexArray, FloatArray, IntArray
-from icage.cage import SearchLog, SearchStep
 from icage.contact_space.kernels.columns import (
     ABOVE,
     BELOW,
@@ -37,6 +36,7 @@ from icage.contact_space.surroundings import Surroundings, surroundings
 from icage.errors import GeometryError
 from icage.hand import HandShape
 from icage.outline import Outline
+from icage.search_log import SearchLog, SearchStep
 
 REGION_LIMIT: Final = 5_000_000
 """Convex regions visited before the search gives up: about 2 GB."""

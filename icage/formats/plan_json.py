@@ -8,8 +8,9 @@ from typing import Any, Final
 import shapely
 
 from icage.brink import Brink
-from icage.cage import Cage, SearchLog
+from icage.cage import Cage
 from icage.cells.regions import FingerRegion
+from icage.search_log import SearchLog
 from icage.shelf import Shelf
 from icage.wedge import Wedge, WedgeKind
 

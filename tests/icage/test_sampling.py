@@ -12,6 +12,7 @@ from icage.arrays import FloatArray
 from icage.cage import Cage
 from icage.cells.membership import TARGET, query
 from icage.cells.regions import caging_regions
+from icage.region_points import Area
 from icage.sampling import SamplingError, StartSet, draw_starts, has_rest, safe_level
 from tests.experiments.small import cage_of
 
@@ -117,7 +118,7 @@ def fans(sizes: FloatArray) -> shapely.MultiPolygon:
     ids=["equal", "one", "growing", "shrinking", "specks"],
 )
 def test_triangles_are_those_of_a_bisection(sizes: FloatArray):
-    area = starts._Area.of(fans(sizes))
+    area = Area.of(fans(sizes))
     shares = area.cumulative / area.cumulative[-1]
     near = [np.nextafter(shares, 0.0), shares, np.nextafter(shares, 1.0)]
     rng = np.random.default_rng(4)
